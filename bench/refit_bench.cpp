@@ -6,7 +6,7 @@
 #include <string>
 
 #include "benchmarks.hpp"
-#include "support/swaying_tree.hpp"
+#include "support/scenes/swaying_tree.hpp"
 
 namespace dapple::bench {
 namespace {

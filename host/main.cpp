@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "commands/argument_errors.hpp"
+#include "commands/arguments/argument_errors.hpp"
 #include "commands/command.hpp"
 #include "commands/interruption.hpp"
 #include "dapple/error.hpp"

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "accuracy/report.hpp"
-#include "support/line_of_points.hpp"
-#include "support/receding_camera.hpp"
+#include "support/scenes/line_of_points.hpp"
+#include "support/scenes/receding_camera.hpp"
 
 namespace dapple::bench {
 namespace {

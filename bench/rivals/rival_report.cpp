@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "accuracy/report.hpp"
-#include "rivals/embree_trace.hpp"
+#include "rivals/embree/embree_trace.hpp"
 
 namespace dapple::bench {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "accuracy/svg_plot.hpp"
 #include "rivals/contest.hpp"
-#include "rivals/ray_protocol.hpp"
+#include "rivals/protocols/ray_protocol.hpp"
 
 namespace dapple::bench {
 

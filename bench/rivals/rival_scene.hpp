@@ -4,8 +4,8 @@
 
 #include "accuracy/picture_scene.hpp"
 #include "camera/view.hpp"
-#include "rivals/ao_points.hpp"
-#include "rivals/embree_picture.hpp"
+#include "rivals/embree/ao_points.hpp"
+#include "rivals/embree/embree_picture.hpp"
 
 namespace dapple::bench {
 

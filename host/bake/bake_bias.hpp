@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "bake/sample_tracer.hpp"
+#include "bake/samples/sample_tracer.hpp"
 #include "dapple/bias.hpp"
 #include "render/stopwatch.hpp"
 #include "sampling/bias_estimate.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "bake/sample_tracer.hpp"
+#include "bake/samples/sample_tracer.hpp"
 #include "dapple/render.hpp"
 #include "render/render_settings.hpp"
 #include "render/stopwatch.hpp"

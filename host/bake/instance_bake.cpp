@@ -6,7 +6,7 @@
 
 #include "bake/vertex_bake.hpp"
 #include "sampling/random_choice.hpp"
-#include "scene/invertible.hpp"
+#include "scene/check/invertible.hpp"
 
 namespace dapple {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "scene/invertible.hpp"
+#include "scene/check/invertible.hpp"
 
 namespace dapple {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "bake/sample_tracer.hpp"
+#include "bake/samples/sample_tracer.hpp"
 
 namespace dapple {
 

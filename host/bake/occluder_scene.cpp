@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include "bake/bake_bias.hpp"
-#include "bake/surface_samples.hpp"
+#include "bake/samples/surface_samples.hpp"
 #include "device/programs/kernels_ahead.hpp"
 #include "passes/kernel_list.hpp"
 #include "render/stopwatch.hpp"
-#include "scene/scene_check.hpp"
+#include "scene/check/scene_check.hpp"
 
 namespace dapple {
 namespace {

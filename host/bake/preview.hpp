@@ -3,7 +3,7 @@
 #pragma once
 
 #include "dapple/bake.hpp"
-#include "film/png.hpp"
+#include "film/preview/png.hpp"
 
 namespace dapple {
 

@@ -5,7 +5,7 @@
 
 #include <optional>
 
-#include "bake/sample_rounds.hpp"
+#include "bake/samples/sample_rounds.hpp"
 #include "dapple/bake.hpp"
 
 namespace dapple {

@@ -5,9 +5,9 @@
 #include <memory>
 #include <optional>
 
+#include "commands/arguments/output_name.hpp"
+#include "commands/arguments/output_paths.hpp"
 #include "commands/command.hpp"
-#include "commands/output_name.hpp"
-#include "commands/output_paths.hpp"
 #include "compare/difference.hpp"
 #include "compare/figures_text.hpp"
 #include "compare/heat_map.hpp"

@@ -5,8 +5,8 @@
 #include <csignal>
 #include <cstdlib>
 
+#include "commands/arguments/option_text.hpp"
 #include "commands/command.hpp"
-#include "commands/option_text.hpp"
 #include "device/context.hpp"
 #include "device/programs/compiler_processes.hpp"
 #include "passes/warm_up.hpp"

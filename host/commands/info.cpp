@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 
 #include "bvh/opacity/opacity_mip_levels.hpp"
+#include "commands/arguments/option_text.hpp"
+#include "commands/arguments/shared_options.hpp"
 #include "commands/command.hpp"
-#include "commands/option_text.hpp"
-#include "commands/shared_options.hpp"
-#include "commands/shot.hpp"
+#include "commands/render/shot.hpp"
 #include "commands/statistics_text.hpp"
 #include "dapple/bvh.hpp"
 #include "dapple/error.hpp"

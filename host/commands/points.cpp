@@ -11,12 +11,12 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "commands/arguments/option_text.hpp"
+#include "commands/arguments/output_paths.hpp"
+#include "commands/arguments/shared_options.hpp"
 #include "commands/command.hpp"
 #include "commands/interruption.hpp"
-#include "commands/option_text.hpp"
-#include "commands/output_paths.hpp"
 #include "commands/progress.hpp"
-#include "commands/shared_options.hpp"
 #include "commands/statistics_text.hpp"
 #include "commands/tell.hpp"
 #include "dapple/error.hpp"

@@ -5,8 +5,8 @@
 
 #include <memory>
 
+#include "commands/arguments/output_paths.hpp"
 #include "commands/command.hpp"
-#include "commands/output_paths.hpp"
 #include "dapple/error.hpp"
 #include "scene/procedural/procedural.hpp"
 

@@ -4,8 +4,8 @@
 #pragma once
 
 #include "compare/layer_pairs.hpp"
-#include "film/heat_color.hpp"
-#include "film/png.hpp"
+#include "film/preview/heat_color.hpp"
+#include "film/preview/png.hpp"
 
 namespace dapple {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "dapple/film.hpp"
-#include "film/exr_parts.hpp"
+#include "film/exr/exr_parts.hpp"
 
 namespace dapple {
 

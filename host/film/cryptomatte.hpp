@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "dapple/film.hpp"
-#include "film/matte_sums.hpp"
+#include "film/sums/matte_sums.hpp"
 
 namespace dapple {
 

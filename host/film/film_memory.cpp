@@ -4,7 +4,7 @@
 #include <unistd.h>
 
 #include "dapple/error.hpp"
-#include "film/film_sums.hpp"
+#include "film/sums/film_sums.hpp"
 
 namespace dapple {
 namespace {

@@ -12,10 +12,10 @@
 
 #include "camera/camera_splitting.hpp"
 #include "film/back_sources.hpp"
-#include "film/film_sums.hpp"
 #include "film/light_layers.hpp"
+#include "film/sums/film_sums.hpp"
 #include "film/traced_picture.hpp"
-#include "scene/dark_light.hpp"
+#include "scene/lights/dark_light.hpp"
 
 namespace dapple {
 namespace {

@@ -10,9 +10,9 @@
 
 #include "dapple/bias.hpp"
 #include "device/context.hpp"
-#include "film/deep_sums.hpp"
-#include "film/matte_sums.hpp"
-#include "film/motion_sums.hpp"
+#include "film/sums/deep_sums.hpp"
+#include "film/sums/matte_sums.hpp"
+#include "film/sums/motion_sums.hpp"
 
 namespace dapple {
 

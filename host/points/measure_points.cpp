@@ -23,7 +23,7 @@
 #include "render/queries/point_occlusion.hpp"
 #include "render/stopwatch.hpp"
 #include "sampling/random_choice.hpp"
-#include "scene/scene_check.hpp"
+#include "scene/check/scene_check.hpp"
 
 namespace dapple {
 namespace {

@@ -17,8 +17,8 @@
 #include "dapple/error.hpp"
 #include "files/output_file.hpp"
 #include "points/number_table.hpp"
+#include "scene/check/numeric_range.hpp"
 #include "scene/message.hpp"
-#include "scene/numeric_range.hpp"
 
 namespace dapple {
 namespace {

@@ -11,7 +11,7 @@
 #include "passes/kernel_list.hpp"
 #include "points/point_sets.hpp"
 #include "render/stopwatch.hpp"
-#include "scene/scene_check.hpp"
+#include "scene/check/scene_check.hpp"
 
 namespace dapple {
 

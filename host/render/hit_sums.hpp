@@ -6,7 +6,7 @@
 #include <span>
 
 #include "dapple/shared/pass_params.h"
-#include "film/matte_sums.hpp"
+#include "film/sums/matte_sums.hpp"
 #include "render/matte_lookup.hpp"
 #include "render/motion_lookup.hpp"
 #include "render/trace_state.hpp"

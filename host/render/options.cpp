@@ -11,7 +11,7 @@
 
 #include "dapple/error.hpp"
 #include "render/option_check.hpp"
-#include "scene/numeric_range.hpp"
+#include "scene/check/numeric_range.hpp"
 
 namespace dapple {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "dapple/render.hpp"
 #include "device/upload/scene_upload.hpp"
-#include "film/film_sums.hpp"
+#include "film/sums/film_sums.hpp"
 #include "film/traced_picture.hpp"
 #include "render/hit_sums.hpp"
 #include "render/trace_state.hpp"
@@ -22,7 +22,8 @@ struct TraceControl {
   double save_every = 0;                          ///< seconds
   std::function<void(const TraceState&)> finish;  ///< called once all samples are traced
   SampleOrder order = SampleOrder::pixels;
-  /// Asked once an interrupted picture is saved. true: it is left without sums, for the end is near.
+  /// Asked once an interrupted picture is saved. true: it is left without sums, for the end is
+  /// near.
   std::function<bool()> skip_film = {};
 };
 

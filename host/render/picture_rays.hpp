@@ -8,7 +8,7 @@
 #include "camera/view.hpp"
 #include "dapple/options.hpp"
 #include "device/upload/scene_upload.hpp"
-#include "film/film_sums.hpp"
+#include "film/sums/film_sums.hpp"
 #include "passes/queues.hpp"
 
 namespace dapple {

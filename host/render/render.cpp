@@ -30,9 +30,9 @@
 #include "render/unseen_lights.hpp"
 #include "sampling/bias_estimate.hpp"
 #include "sampling/shard.hpp"
+#include "scene/check/scene_check.hpp"
 #include "scene/corner_normals.hpp"
-#include "scene/default_lights.hpp"
-#include "scene/scene_check.hpp"
+#include "scene/lights/default_lights.hpp"
 
 namespace dapple {
 namespace {

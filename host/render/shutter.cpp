@@ -9,9 +9,9 @@
 #include "camera/camera_splitting.hpp"
 #include "dapple/error.hpp"
 #include "sampling/shard.hpp"
+#include "scene/check/scene_check.hpp"
 #include "scene/corner_normals.hpp"
-#include "scene/dark_light.hpp"
-#include "scene/scene_check.hpp"
+#include "scene/lights/dark_light.hpp"
 
 namespace dapple {
 namespace {

@@ -6,7 +6,7 @@
 #include "dapple/device.hpp"
 #include "dapple/options.hpp"
 #include "dapple/shared/pass_params.h"
-#include "film/film_sums.hpp"
+#include "film/sums/film_sums.hpp"
 
 namespace dapple {
 

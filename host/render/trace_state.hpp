@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "device/context.hpp"
-#include "film/bias_sums.hpp"
-#include "film/deep_sums.hpp"
-#include "film/motion_sums.hpp"
+#include "film/sums/bias_sums.hpp"
+#include "film/sums/deep_sums.hpp"
+#include "film/sums/motion_sums.hpp"
 #include "sampling/round.hpp"
 
 namespace dapple {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "film/light_layers.hpp"
-#include "scene/dark_light.hpp"
+#include "scene/lights/dark_light.hpp"
 
 namespace dapple {
 namespace {

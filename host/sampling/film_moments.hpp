@@ -8,7 +8,7 @@
 
 #include "dapple/options.hpp"
 #include "device/context.hpp"
-#include "film/film_sums.hpp"
+#include "film/sums/film_sums.hpp"
 #include "sampling/batch_variance.hpp"
 #include "scene/images/color.hpp"
 

@@ -8,7 +8,7 @@
 
 #include "dapple/error.hpp"
 #include "dapple/scene.hpp"
-#include "scene/finite.hpp"
+#include "scene/check/finite.hpp"
 
 namespace dapple {
 namespace {

@@ -8,9 +8,9 @@
 #include <limits>
 #include <new>
 
-#include "scene/finite.hpp"
+#include "scene/check/finite.hpp"
+#include "scene/check/numeric_range.hpp"
 #include "scene/message.hpp"
-#include "scene/numeric_range.hpp"
 #include "scene/regular_file.hpp"
 
 namespace dapple {

@@ -10,10 +10,10 @@
 
 #include "dapple/error.hpp"
 #include "dapple/scene.hpp"
-#include "scene/invertible.hpp"
-#include "scene/numeric_range.hpp"
-#include "scene/scene_check.hpp"
-#include "scene/triangle_cleanup.hpp"
+#include "scene/check/invertible.hpp"
+#include "scene/check/numeric_range.hpp"
+#include "scene/check/scene_check.hpp"
+#include "scene/check/triangle_cleanup.hpp"
 
 namespace dapple {
 namespace {

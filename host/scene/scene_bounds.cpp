@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "dapple/scene.hpp"
-#include "scene/invertible.hpp"
+#include "scene/check/invertible.hpp"
 
 namespace dapple {
 namespace {

@@ -6,9 +6,9 @@
 
 #include "dapple/error.hpp"
 #include "dapple/scene.hpp"
+#include "scene/check/scene_check.hpp"
 #include "scene/ground.hpp"
 #include "scene/procedural/mesh_shapes.hpp"
-#include "scene/scene_check.hpp"
 
 namespace dapple {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "dapple/bake.hpp"
 #include "dapple/error.hpp"
-#include "support/film_files.hpp"
-#include "support/scene_on_device.hpp"
+#include "support/files/film_files.hpp"
+#include "support/scenes/scene_on_device.hpp"
 
 namespace dapple {
 namespace {

@@ -8,7 +8,7 @@
 #include <cstring>
 
 #include "dapple/error.hpp"
-#include "support/scene_on_device.hpp"
+#include "support/scenes/scene_on_device.hpp"
 
 namespace dapple {
 namespace {

@@ -9,7 +9,7 @@
 #include "bake/inside/closed_geometry.hpp"
 #include "bake/inside/closed_parts.hpp"
 #include "dapple/bake.hpp"
-#include "support/scene_on_device.hpp"
+#include "support/scenes/scene_on_device.hpp"
 
 namespace dapple {
 namespace {

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "dapple/bake.hpp"
-#include "support/scene_on_device.hpp"
+#include "support/scenes/scene_on_device.hpp"
 
 namespace dapple {
 namespace {

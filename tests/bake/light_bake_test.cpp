@@ -6,7 +6,7 @@
 
 #include "dapple/bake.hpp"
 #include "dapple/error.hpp"
-#include "support/scene_on_device.hpp"
+#include "support/scenes/scene_on_device.hpp"
 
 namespace dapple {
 namespace {

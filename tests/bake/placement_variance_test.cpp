@@ -1,15 +1,15 @@
 // Standard errors that bakes report, against how much values differ from run to run or from closed
 // forms: of meshes with several placements, and of rays from vertices.
-#include "bake/placement_variance.hpp"
+#include "bake/samples/placement_variance.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "bake/surface_samples.hpp"
+#include "bake/samples/surface_samples.hpp"
 #include "dapple/bake.hpp"
-#include "support/scene_on_device.hpp"
+#include "support/scenes/scene_on_device.hpp"
 
 namespace dapple {
 namespace {

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <set>
 
-#include "bake/surface_samples.hpp"
+#include "bake/samples/surface_samples.hpp"
 #include "bake/texture/texture_layout.hpp"
 #include "sampling/random_choice.hpp"
-#include "support/scene_on_device.hpp"
+#include "support/scenes/scene_on_device.hpp"
 
 namespace dapple {
 namespace {

@@ -6,12 +6,12 @@
 #include <cstring>
 #include <numeric>
 
-#include "bake/light_tracer.hpp"
 #include "bake/occluder_scene.hpp"
-#include "bake/sample_tracer.hpp"
+#include "bake/samples/light_tracer.hpp"
+#include "bake/samples/sample_tracer.hpp"
 #include "dapple/bake.hpp"
-#include "support/scene_on_device.hpp"
-#include "support/smooth_shapes.hpp"
+#include "support/scenes/scene_on_device.hpp"
+#include "support/scenes/smooth_shapes.hpp"
 
 namespace dapple {
 namespace {

@@ -6,7 +6,7 @@
 #include "bake/texture/texture_memory.hpp"
 #include "dapple/bake.hpp"
 #include "dapple/error.hpp"
-#include "support/scene_on_device.hpp"
+#include "support/scenes/scene_on_device.hpp"
 
 namespace dapple {
 namespace {

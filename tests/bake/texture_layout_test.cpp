@@ -12,7 +12,7 @@
 #include "bake/texture/packing.hpp"
 #include "bake/texture/texel_cover.hpp"
 #include "dapple/error.hpp"
-#include "support/scene_on_device.hpp"
+#include "support/scenes/scene_on_device.hpp"
 
 namespace dapple {
 namespace {

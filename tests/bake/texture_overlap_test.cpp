@@ -7,7 +7,7 @@
 #include "bake/texture/texture_layout.hpp"
 #include "bake/texture/uv_overlap.hpp"
 #include "dapple/error.hpp"
-#include "support/scene_on_device.hpp"
+#include "support/scenes/scene_on_device.hpp"
 
 namespace dapple {
 namespace {

@@ -1,5 +1,5 @@
 // Values of places from samples of both sides: which side counts, and how much.
-#include "bake/value_sums.hpp"
+#include "bake/samples/value_sums.hpp"
 
 #include <gtest/gtest.h>
 

@@ -11,7 +11,7 @@
 #include <set>
 
 #include "bake/placement_choice.hpp"
-#include "bake/surface_samples.hpp"
+#include "bake/samples/surface_samples.hpp"
 #include "sampling/random_choice.hpp"
 
 namespace dapple {

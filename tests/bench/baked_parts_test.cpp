@@ -1,6 +1,6 @@
 // The parts of meshes that the protocol "bake" of `dapple-bench rivals` bakes: which triangles they
 // have, and that their vertices have the values of the whole mesh.
-#include "rivals/baked_parts.hpp"
+#include "rivals/protocols/baked_parts.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <tuple>
 
 #include "bake/vertex_bake.hpp"
-#include "support/scene_on_device.hpp"
+#include "support/scenes/scene_on_device.hpp"
 
 namespace dapple::bench {
 namespace {

@@ -1,5 +1,5 @@
 // Which rows of rays are said to trace something else than exact rays do.
-#include "rivals/ray_rows.hpp"
+#include "rivals/protocols/ray_rows.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,9 +7,9 @@
 #include <numeric>
 
 #include "dapple/render.hpp"
-#include "support/scene_on_device.hpp"
-#include "support/shading_pictures.hpp"
-#include "support/smooth_shapes.hpp"
+#include "support/scenes/scene_on_device.hpp"
+#include "support/scenes/shading_pictures.hpp"
+#include "support/scenes/smooth_shapes.hpp"
 
 namespace dapple {
 namespace {

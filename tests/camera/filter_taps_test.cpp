@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "support/scene_on_device.hpp"
+#include "support/scenes/scene_on_device.hpp"
 
 namespace dapple {
 namespace {

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "support/scene_on_device.hpp"
+#include "support/scenes/scene_on_device.hpp"
 
 namespace dapple {
 namespace {

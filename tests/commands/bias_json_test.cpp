@@ -7,7 +7,7 @@
 #include <set>
 #include <string>
 
-#include "support/program_run.hpp"
+#include "support/programs/program_run.hpp"
 
 namespace dapple {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "dapple/film.hpp"
 #include "dapple/shared/ray.h"
-#include "support/program_run.hpp"
+#include "support/programs/program_run.hpp"
 
 namespace dapple {
 namespace {

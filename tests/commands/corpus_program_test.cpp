@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "corpus/corpus.hpp"
-#include "support/film_files.hpp"
+#include "support/files/film_files.hpp"
 #include "support/sanitizers.hpp"
 
 namespace dapple::test {

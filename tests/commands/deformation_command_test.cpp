@@ -7,9 +7,9 @@
 #include <cmath>
 #include <cstring>
 
-#include "support/gltf_builder.hpp"
-#include "support/program_run.hpp"
-#include "support/reed.hpp"
+#include "support/files/gltf_builder.hpp"
+#include "support/programs/program_run.hpp"
+#include "support/scenes/reed.hpp"
 
 namespace dapple {
 namespace {

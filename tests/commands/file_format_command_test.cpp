@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "support/program_run.hpp"
+#include "support/programs/program_run.hpp"
 
 namespace dapple {
 namespace {

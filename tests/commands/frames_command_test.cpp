@@ -8,10 +8,10 @@
 #include <csignal>
 #include <thread>
 
-#include "support/gltf_builder.hpp"
-#include "support/hair_builder.hpp"
-#include "support/program_run.hpp"
-#include "support/running_program.hpp"
+#include "support/files/gltf_builder.hpp"
+#include "support/files/hair_builder.hpp"
+#include "support/programs/program_run.hpp"
+#include "support/programs/running_program.hpp"
 
 namespace dapple {
 namespace {

@@ -6,8 +6,8 @@
 
 #include <fstream>
 
-#include "support/gltf_builder.hpp"
-#include "support/program_run.hpp"
+#include "support/files/gltf_builder.hpp"
+#include "support/programs/program_run.hpp"
 
 namespace dapple {
 namespace {

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "support/command_help.hpp"
-#include "support/gltf_builder.hpp"
-#include "support/program_run.hpp"
+#include "support/files/gltf_builder.hpp"
+#include "support/programs/command_help.hpp"
+#include "support/programs/program_run.hpp"
 
 namespace dapple {
 namespace {

@@ -6,7 +6,7 @@
 #include <regex>
 
 #include "files/exr_reader.hpp"
-#include "support/program_run.hpp"
+#include "support/programs/program_run.hpp"
 
 namespace dapple {
 namespace {

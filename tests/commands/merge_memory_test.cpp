@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "dapple/render.hpp"
-#include "support/adoption.hpp"
-#include "support/film_files.hpp"
-#include "support/running_program.hpp"
+#include "support/files/film_files.hpp"
+#include "support/programs/adoption.hpp"
+#include "support/programs/running_program.hpp"
 #include "support/sanitizers.hpp"
 
 namespace dapple {

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "support/gltf_builder.hpp"
-#include "support/program_run.hpp"
+#include "support/files/gltf_builder.hpp"
+#include "support/programs/program_run.hpp"
 
 namespace dapple {
 namespace {

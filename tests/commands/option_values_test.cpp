@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "support/command_help.hpp"
-#include "support/program_run.hpp"
+#include "support/programs/command_help.hpp"
+#include "support/programs/program_run.hpp"
 
 namespace dapple {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "support/program_run.hpp"
+#include "support/programs/program_run.hpp"
 
 namespace dapple {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "support/program_run.hpp"
-#include "support/running_program.hpp"
+#include "support/programs/program_run.hpp"
+#include "support/programs/running_program.hpp"
 #include "support/sanitizers.hpp"
 
 namespace dapple {

@@ -2,9 +2,9 @@
 // standard error. It says which limit, or is right all the same.
 #include <gtest/gtest.h>
 
-#include "support/processor_time.hpp"
-#include "support/program_run.hpp"
-#include "support/running_program.hpp"
+#include "support/programs/processor_time.hpp"
+#include "support/programs/program_run.hpp"
+#include "support/programs/running_program.hpp"
 #include "support/sanitizers.hpp"
 
 namespace dapple {

@@ -1,7 +1,7 @@
 // What a person sees on a terminal before rays are traced: large files and BVHs take long.
 #include <gtest/gtest.h>
 
-#include "support/program_run.hpp"
+#include "support/programs/program_run.hpp"
 
 namespace dapple::program_test {
 namespace {

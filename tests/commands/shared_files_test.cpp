@@ -2,8 +2,8 @@
 // one of them, both processes end as if they were alone, and nothing else is left.
 #include <gtest/gtest.h>
 
-#include "support/film_files.hpp"
-#include "support/running_program.hpp"
+#include "support/files/film_files.hpp"
+#include "support/programs/running_program.hpp"
 
 namespace dapple {
 namespace {

@@ -3,8 +3,8 @@
 // comes while the last checkpoint is written. Slow: longer than a hanging driver is waited for.
 #include <gtest/gtest.h>
 
-#include "support/film_files.hpp"
-#include "support/running_program.hpp"
+#include "support/files/film_files.hpp"
+#include "support/programs/running_program.hpp"
 
 namespace dapple {
 namespace {

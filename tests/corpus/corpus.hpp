@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "support/gltf_builder.hpp"
+#include "support/files/gltf_builder.hpp"
 
 namespace dapple::test {
 

@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "corpus/corpus.hpp"
-#include "support/hair_builder.hpp"
+#include "support/files/hair_builder.hpp"
 
 namespace dapple::test {
 namespace {

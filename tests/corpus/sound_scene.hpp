@@ -1,7 +1,7 @@
 // A valid scene that uses each kind of glTF element. The corpus makes malformed cases from it.
 #pragma once
 
-#include "support/gltf_builder.hpp"
+#include "support/files/gltf_builder.hpp"
 
 namespace dapple::test {
 

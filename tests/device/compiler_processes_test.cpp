@@ -14,9 +14,9 @@
 #include "device/environment_while.hpp"
 #include "passes/kernel_list.hpp"
 #include "passes/warm_up.hpp"
-#include "support/adoption.hpp"
-#include "support/program_run.hpp"
-#include "support/running_program.hpp"
+#include "support/programs/adoption.hpp"
+#include "support/programs/program_run.hpp"
+#include "support/programs/running_program.hpp"
 #include "support/sanitizers.hpp"
 
 namespace dapple {

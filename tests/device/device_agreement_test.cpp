@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "support/scene_on_device.hpp"
+#include "support/scenes/scene_on_device.hpp"
 
 namespace dapple {
 namespace {

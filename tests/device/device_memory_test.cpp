@@ -13,8 +13,8 @@
 #include "device/page_pool.hpp"
 #include "device/upload/memory_need.hpp"
 #include "support/failing_opencl.hpp"
-#include "support/film_files.hpp"
-#include "support/scene_on_device.hpp"
+#include "support/files/film_files.hpp"
+#include "support/scenes/scene_on_device.hpp"
 
 namespace dapple {
 namespace {

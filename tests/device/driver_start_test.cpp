@@ -2,7 +2,7 @@
 // ends with exit code 4 and a message about this cause. It never ends by a signal.
 #include <gtest/gtest.h>
 
-#include "support/program_run.hpp"
+#include "support/programs/program_run.hpp"
 
 namespace dapple {
 namespace {

@@ -14,7 +14,7 @@
 #include "device/environment_while.hpp"
 #include "device/programs/sealed_folder.hpp"
 #include "files/temporary_file.hpp"
-#include "support/program_run.hpp"
+#include "support/programs/program_run.hpp"
 
 namespace dapple {
 namespace {

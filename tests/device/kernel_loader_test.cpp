@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include "dapple/error.hpp"
-#include "support/program_run.hpp"
+#include "support/programs/program_run.hpp"
 
 namespace dapple {
 namespace {

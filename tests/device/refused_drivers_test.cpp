@@ -8,7 +8,7 @@
 #include "dapple/error.hpp"
 #include "device/platform_names.hpp"
 #include "support/failing_opencl.hpp"
-#include "support/film_files.hpp"
+#include "support/files/film_files.hpp"
 
 namespace dapple {
 namespace {

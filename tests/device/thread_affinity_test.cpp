@@ -7,8 +7,8 @@
 
 #include "device/cpus.hpp"
 #include "device/environment_while.hpp"
-#include "support/film_files.hpp"
-#include "support/running_program.hpp"
+#include "support/files/film_files.hpp"
+#include "support/programs/running_program.hpp"
 
 namespace dapple {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "dapple/device.hpp"
 #include "device/platform_names.hpp"
-#include "support/program_run.hpp"
+#include "support/programs/program_run.hpp"
 
 namespace dapple {
 namespace {

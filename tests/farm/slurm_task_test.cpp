@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "support/film_files.hpp"
+#include "support/files/film_files.hpp"
 
 namespace dapple {
 namespace {

@@ -11,7 +11,7 @@
 #include <ImfTiledOutputFile.h>
 #include <gtest/gtest.h>
 
-#include "support/film_files.hpp"
+#include "support/files/film_files.hpp"
 
 namespace dapple {
 namespace {

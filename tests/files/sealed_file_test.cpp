@@ -13,7 +13,7 @@
 #include <filesystem>
 #include <random>
 
-#include "support/film_files.hpp"
+#include "support/files/film_files.hpp"
 
 namespace dapple {
 namespace {

@@ -10,7 +10,7 @@
 #include <csignal>
 
 #include "files/output_file.hpp"
-#include "support/film_files.hpp"
+#include "support/files/film_files.hpp"
 
 namespace dapple {
 namespace {

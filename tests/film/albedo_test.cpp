@@ -10,8 +10,8 @@
 
 #include "dapple/render.hpp"
 #include "device/upload/color_upload.hpp"
-#include "support/hair_builder.hpp"
-#include "support/smooth_shapes.hpp"
+#include "support/files/hair_builder.hpp"
+#include "support/scenes/smooth_shapes.hpp"
 
 namespace dapple {
 namespace {

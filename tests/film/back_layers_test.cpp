@@ -8,7 +8,7 @@
 
 #include "dapple/render.hpp"
 #include "dapple/scene.hpp"
-#include "support/smooth_shapes.hpp"
+#include "support/scenes/smooth_shapes.hpp"
 
 namespace dapple {
 namespace {

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "dapple/render.hpp"
-#include "support/smooth_shapes.hpp"
+#include "support/scenes/smooth_shapes.hpp"
 
 namespace dapple {
 namespace {

@@ -8,7 +8,7 @@
 #include <bit>
 #include <cmath>
 
-#include "support/film_files.hpp"
+#include "support/files/film_files.hpp"
 
 namespace dapple {
 namespace {

@@ -9,10 +9,10 @@
 #include <cmath>
 #include <cstring>
 
-#include "film/deep_sums.hpp"
-#include "support/film_files.hpp"
-#include "support/program_run.hpp"
-#include "support/scene_on_device.hpp"
+#include "film/sums/deep_sums.hpp"
+#include "support/files/film_files.hpp"
+#include "support/programs/program_run.hpp"
+#include "support/scenes/scene_on_device.hpp"
 
 namespace dapple {
 namespace {

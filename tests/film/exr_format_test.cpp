@@ -17,8 +17,8 @@
 #include <cmath>
 #include <limits>
 
-#include "film/exr_parts.hpp"
-#include "support/film_files.hpp"
+#include "film/exr/exr_parts.hpp"
+#include "support/files/film_files.hpp"
 
 namespace dapple {
 namespace {

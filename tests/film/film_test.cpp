@@ -10,7 +10,7 @@
 
 #include <limits>
 
-#include "support/film_files.hpp"
+#include "support/files/film_files.hpp"
 
 namespace dapple {
 namespace {

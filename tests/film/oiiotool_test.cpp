@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
-#include "film/exr_parts.hpp"
-#include "support/program_run.hpp"
+#include "film/exr/exr_parts.hpp"
+#include "support/programs/program_run.hpp"
 
 namespace dapple {
 namespace {

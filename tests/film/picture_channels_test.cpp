@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "support/scene_on_device.hpp"
+#include "support/scenes/scene_on_device.hpp"
 
 namespace dapple {
 namespace {

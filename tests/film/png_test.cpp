@@ -3,7 +3,7 @@
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC
 #define STBI_ONLY_PNG
-#include "film/png.hpp"
+#include "film/preview/png.hpp"
 
 #include <gtest/gtest.h>
 #include <stb_image.h>
@@ -14,9 +14,9 @@
 #include <limits>
 #include <memory>
 
-#include "film/pixel_elevation.hpp"
-#include "film/tone_map.hpp"
-#include "support/film_files.hpp"
+#include "film/preview/pixel_elevation.hpp"
+#include "film/preview/tone_map.hpp"
+#include "support/files/film_files.hpp"
 
 namespace dapple {
 namespace {

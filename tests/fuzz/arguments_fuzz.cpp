@@ -1,7 +1,7 @@
 // Parses any text as the argument of each option: this gives a value, or an Error of kind usage.
 #include <string>
 
-#include "commands/option_text.hpp"
+#include "commands/arguments/option_text.hpp"
 #include "dapple/error.hpp"
 #include "scene/procedural/parameters.hpp"
 #include "scene/procedural/procedural.hpp"

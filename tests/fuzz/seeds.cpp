@@ -14,7 +14,7 @@
 #include "corpus/corpus.hpp"
 #include "dapple/film.hpp"
 #include "points/point_file.hpp"
-#include "support/gltf_builder.hpp"
+#include "support/files/gltf_builder.hpp"
 
 namespace {
 

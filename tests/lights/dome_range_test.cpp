@@ -4,7 +4,7 @@
 
 #include "dapple/render.hpp"
 #include "scene/images/dome_image.hpp"
-#include "support/film_files.hpp"
+#include "support/files/film_files.hpp"
 
 namespace dapple {
 namespace {

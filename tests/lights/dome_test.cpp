@@ -9,8 +9,8 @@
 #include "scene/images/dome_image.hpp"
 #include "scene/images/dome_rows.hpp"
 #include "scene/images/radiance_hdr.hpp"
-#include "support/film_files.hpp"
-#include "support/point_on_ground.hpp"
+#include "support/files/film_files.hpp"
+#include "support/scenes/point_on_ground.hpp"
 
 namespace dapple {
 namespace {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "film/light_layers.hpp"
-#include "support/point_on_ground.hpp"
+#include "support/scenes/point_on_ground.hpp"
 
 namespace dapple {
 namespace {

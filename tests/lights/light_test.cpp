@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "film/layers.hpp"
-#include "support/point_on_ground.hpp"
+#include "support/scenes/point_on_ground.hpp"
 
 namespace dapple {
 namespace {

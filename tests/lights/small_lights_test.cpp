@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "support/point_on_ground.hpp"
+#include "support/scenes/point_on_ground.hpp"
 
 namespace dapple {
 namespace {

@@ -30,7 +30,7 @@ MUTATIONS = [
         "return sum *",
         r"^(Light|LightLayers|Beauty)\."),
     Mutation(
-        "far-lights-in-coarse-steps", "host/film/film_sums.cpp",
+        "far-lights-in-coarse-steps", "host/film/sums/film_sums.cpp",
         "constexpr int kSmallestBits = 12,",
         "constexpr int kSmallestBits = 0,",
         r"^SmallLights\."),
@@ -66,27 +66,27 @@ MUTATIONS = [
         "rest = rest << 8 | byte(k);",
         r"^(Murmur3|MatteId)\."),
     Mutation(
-        "merged-mattes-keep-the-last", "host/film/matte_sums.cpp",
+        "merged-mattes-keep-the-last", "host/film/sums/matte_sums.cpp",
         "slot->first = std::min(slot->first, one.first);",
         "slot->first = std::max(slot->first, one.first);",
         r"^(MatteSums|CryptomatteResume|MergeParts)\."),
     Mutation(
-        "deep-alphas-of-all-samples", "host/film/deep_sums.cpp",
+        "deep-alphas-of-all-samples", "host/film/sums/deep_sums.cpp",
         "      left -= slot.count;\n",
         "",
         r"^(DeepSums|DeepAlpha)\."),
     Mutation(
-        "deep-samples-merge-to-the-wrong-side", "host/film/deep_sums.cpp",
+        "deep-samples-merge-to-the-wrong-side", "host/film/sums/deep_sums.cpp",
         "* (b / (a + b))",
         "* (a / (a + b))",
         r"^DeepSums\."),
     Mutation(
-        "lossy-normals", "host/film/exr_parts.cpp",
+        "lossy-normals", "host/film/exr/exr_parts.cpp",
         "lossy && !part->color ? ExrCompression::zip",
         "lossy && part->color ? ExrCompression::zip",
         r"^ExrFormatTest\."),
     Mutation(
-        "png-without-dividing-by-alpha", "host/film/png.cpp",
+        "png-without-dividing-by-alpha", "host/film/preview/png.cpp",
         "tone_mapped(linear * (scale / alpha))",
         "tone_mapped(linear * scale)",
         r"^Png\."),
@@ -238,17 +238,17 @@ MUTATIONS = [
         "1.0f;",
         r"^PointSources\."),
     Mutation(
-        "bake-chooses-the-darker-side", "host/bake/value_sums.cpp",
+        "bake-chooses-the-darker-side", "host/bake/samples/value_sums.cpp",
         "return difference > 0 ? 1.0f : 0.0f;",
         "return difference < 0 ? 1.0f : 0.0f;",
         r"^(Bake|BakeClosedForm|ValueSums)\."),
     Mutation(
-        "sides-of-leaves-by-their-number-of-samples", "host/bake/value_sums.cpp",
+        "sides-of-leaves-by-their-number-of-samples", "host/bake/samples/value_sums.cpp",
         "  difference += back.mean() - front.mean();",
         "  difference += (back.mean() - front.mean()) * back.count();",
         r"^(Bake|ValueSums)\."),
     Mutation(
-        "a-place-without-a-front-is-white", "host/bake/value_sums.cpp",
+        "a-place-without-a-front-is-white", "host/bake/samples/value_sums.cpp",
         "    if (!is_sampled(i)) {  // without",
         "    if (of_place_[i].front.weight <= 0) {  // without",
         r"^(Bake|ValueSums)\."),
@@ -258,7 +258,7 @@ MUTATIONS = [
         "return {};",
         r"^BakeCommand\."),
     Mutation(
-        "bake-ignores-areas", "host/bake/surface_samples.cpp",
+        "bake-ignores-areas", "host/bake/samples/surface_samples.cpp",
         "sample.weight[k] = twice_area * barycentric[k];",
         "sample.weight[k] = barycentric[k];",
         r"^(SurfaceSamples|Bake|BakeClosedForm)\."),
@@ -273,17 +273,17 @@ MUTATIONS = [
         "square(source, u, v) > square(nearest[to], u, v)",
         r"^Dilation\."),
     Mutation(
-        "variance-of-bakes-by-one-interval", "host/bake/value_sums.cpp",
+        "variance-of-bakes-by-one-interval", "host/bake/samples/value_sums.cpp",
         "kWeights{1, 0.5, 0.25}",
         "kWeights{1, 0, 0}",
         r"^BakeTarget\."),
     Mutation(
-        "bent-normals-count-by-scale", "host/bake/sample_tracer.cpp",
+        "bent-normals-count-by-scale", "host/bake/samples/sample_tracer.cpp",
         "values[i].bent.normalized() * traced.bent[k].length();",
         "values[i].bent;",
         r"^MeshPlacements\."),
     Mutation(
-        "dark-values-taken-for-hidden", "host/bake/value_sums.cpp",
+        "dark-values-taken-for-hidden", "host/bake/samples/value_sums.cpp",
         "if (is_dark(i) && has_inside(i)) continue;",
         "if (is_dark(i)) continue;",
         r"^InsideSamples\."),
@@ -313,7 +313,7 @@ MUTATIONS = [
         "const bool behind = found.back[s].scalar < found.front[s].scalar;",
         r"^BakeLight\."),
     Mutation(
-        "baked-irradiance-of-both-sides-adds", "host/bake/value_sums.cpp",
+        "baked-irradiance-of-both-sides-adds", "host/bake/samples/value_sums.cpp",
         "front_light_[at] * ((1 - share) / of_place_",
         "front_light_[at] * (1 / of_place_",
         r"^BakeLight\."),

@@ -141,32 +141,32 @@ MUTATIONS = [
         "return std::max(thickness, static_cast<float>(kSmallestLength));",
         r"^HairFile\."),
     Mutation(
-        "gltf-accessor-without-its-offset", "host/scene/gltf/accessor.cpp",
+        "gltf-accessor-without-its-offset", "host/scene/gltf/document/accessor.cpp",
         "base_ = view_bytes(document, accessor.bufferView).data() + accessor.byteOffset;",
         "base_ = view_bytes(document, accessor.bufferView).data();",
         r"^(GltfGeometry|LoadScene)\."),
     Mutation(
-        "gltf-sparse-values-with-a-stride", "host/scene/gltf/accessor.cpp",
+        "gltf-sparse-values-with-a-stride", "host/scene/gltf/document/accessor.cpp",
         "return sparse_values_ + at * components_ * component_bytes_;",
         "return sparse_values_ + at * stride_;",
         r"^(GltfGeometry|GltfMorph)\."),
     Mutation(
-        "gltf-rotations-take-the-long-way", "host/scene/gltf/animation.cpp",
+        "gltf-rotations-take-the-long-way", "host/scene/gltf/pose/animation.cpp",
         "    to = -to;\n    cosine = -cosine;\n",
         "    cosine = -cosine;\n",
         r"^GltfAnimation\."),
     Mutation(
-        "gltf-cubic-tangents-without-interval", "host/scene/gltf/animation.cpp",
+        "gltf-cubic-tangents-without-interval", "host/scene/gltf/pose/animation.cpp",
         "* from + position.interval * (t3 - 2 * t2 + t) * out_tangent +",
         "* from + (t3 - 2 * t2 + t) * out_tangent +",
         r"^GltfAnimation\."),
     Mutation(
-        "gltf-scale-after-rotation", "host/scene/gltf/hierarchy.cpp",
+        "gltf-scale-after-rotation", "host/scene/gltf/pose/hierarchy.cpp",
         "matrix[row][column] *= scale[row];",
         "matrix[row][column] *= scale[column];",
         r"^(GltfHierarchy|GltfAnimation)\."),
     Mutation(
-        "gltf-bind-matrix-on-the-wrong-side", "host/scene/gltf/deformation.cpp",
+        "gltf-bind-matrix-on-the-wrong-side", "host/scene/gltf/pose/deformation.cpp",
         "matrices[j] = bind * matrices[j];",
         "matrices[j] = matrices[j] * bind;",
         r"^GltfSkin\."),

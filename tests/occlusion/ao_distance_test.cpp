@@ -2,7 +2,7 @@
 // do, and the AO under an infinite plane equals the closed-form integral.
 #include <gtest/gtest.h>
 
-#include "support/scene_on_device.hpp"
+#include "support/scenes/scene_on_device.hpp"
 
 namespace dapple {
 namespace {

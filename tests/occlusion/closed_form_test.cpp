@@ -2,7 +2,7 @@
 // and a solid cube that must be opaque from every side.
 #include <gtest/gtest.h>
 
-#include "support/scene_on_device.hpp"
+#include "support/scenes/scene_on_device.hpp"
 
 namespace dapple {
 namespace {

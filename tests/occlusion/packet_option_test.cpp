@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "support/program_run.hpp"
-#include "support/scene_on_device.hpp"
+#include "support/programs/program_run.hpp"
+#include "support/scenes/scene_on_device.hpp"
 
 namespace dapple {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "dapple/error.hpp"
-#include "support/traced_scenes.hpp"
+#include "support/scenes/traced_scenes.hpp"
 
 namespace dapple {
 namespace {

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "device/upload/scene_upload.hpp"
-#include "support/curly_strands.hpp"
 #include "support/queued_rays.hpp"
+#include "support/scenes/curly_strands.hpp"
 
 namespace dapple {
 namespace {

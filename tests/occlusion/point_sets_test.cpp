@@ -8,7 +8,7 @@
 #include <random>
 
 #include "passes/point_order.hpp"
-#include "support/scene_on_device.hpp"
+#include "support/scenes/scene_on_device.hpp"
 
 namespace dapple {
 namespace {

@@ -2,9 +2,9 @@
 // more than exact occlusion does. `dapple-bench accuracy --line` does the same at full size.
 #include <gtest/gtest.h>
 
-#include "support/line_of_points.hpp"
-#include "support/receding_camera.hpp"
-#include "support/scene_on_device.hpp"
+#include "support/scenes/line_of_points.hpp"
+#include "support/scenes/receding_camera.hpp"
+#include "support/scenes/scene_on_device.hpp"
 
 namespace dapple {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "passes/occlusion_pass.hpp"
 #include "passes/queues.hpp"
-#include "support/scene_on_device.hpp"
+#include "support/scenes/scene_on_device.hpp"
 
 namespace dapple {
 namespace {

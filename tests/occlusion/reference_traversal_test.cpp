@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "support/scene_on_device.hpp"
+#include "support/scenes/scene_on_device.hpp"
 
 namespace dapple {
 namespace {

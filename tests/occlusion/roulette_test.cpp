@@ -7,7 +7,7 @@
 #include "device/context.hpp"
 #include "passes/occlusion_pass.hpp"
 #include "passes/queues.hpp"
-#include "support/traced_scenes.hpp"
+#include "support/scenes/traced_scenes.hpp"
 
 namespace dapple {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <memory>
 
-#include "support/traced_scenes.hpp"
+#include "support/scenes/traced_scenes.hpp"
 
 namespace dapple {
 namespace {

@@ -12,7 +12,7 @@
 #include "bvh/build/coincident_triangles.hpp"
 #include "bvh/opacity/opacity_mip_levels.hpp"
 #include "dapple/shared/opacity.h"
-#include "support/scene_on_device.hpp"
+#include "support/scenes/scene_on_device.hpp"
 
 namespace dapple {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "camera/view.hpp"
 #include "oracle/oracle_scenes.hpp"
-#include "support/smooth_shapes.hpp"
+#include "support/scenes/smooth_shapes.hpp"
 
 namespace dapple::oracle {
 namespace {

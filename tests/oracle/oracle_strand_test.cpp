@@ -7,7 +7,7 @@
 
 #include "oracle/oracle_rays.hpp"
 #include "oracle/oracle_scenes.hpp"
-#include "support/curly_strands.hpp"
+#include "support/scenes/curly_strands.hpp"
 
 namespace dapple::oracle {
 namespace {

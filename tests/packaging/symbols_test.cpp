@@ -9,7 +9,7 @@
 #include <set>
 #include <string>
 
-#include "support/film_files.hpp"
+#include "support/files/film_files.hpp"
 
 namespace dapple {
 namespace {

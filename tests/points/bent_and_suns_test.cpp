@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "dapple/points.hpp"
-#include "support/scene_on_device.hpp"
+#include "support/scenes/scene_on_device.hpp"
 
 namespace dapple {
 namespace {

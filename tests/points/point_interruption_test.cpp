@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "dapple/points.hpp"
-#include "support/scene_on_device.hpp"
+#include "support/scenes/scene_on_device.hpp"
 
 namespace dapple {
 namespace {
@@ -21,8 +21,8 @@ Stopped stopped_at(const PointOptions& options, int last) {
   Stopped stopped{};
   RenderControl control;
   control.stop = [&] { return ++stopped.calls >= last; };
-  const PointResult result = measure_points(make_procedural("scene:tree?leaves=500"), points,
-                                            normals, options, control);
+  const PointResult result =
+      measure_points(make_procedural("scene:tree?leaves=500"), points, normals, options, control);
   stopped.interrupted = result.interrupted;
   return stopped;
 }

@@ -7,7 +7,7 @@
 
 #include "dapple/error.hpp"
 #include "dapple/points.hpp"
-#include "support/scene_on_device.hpp"
+#include "support/scenes/scene_on_device.hpp"
 
 namespace dapple {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "dapple/render.hpp"
-#include "support/smooth_shapes.hpp"
+#include "support/scenes/smooth_shapes.hpp"
 
 namespace dapple {
 namespace {

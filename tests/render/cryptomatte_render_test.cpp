@@ -6,8 +6,8 @@
 #include <cstring>
 
 #include "film/cryptomatte.hpp"
-#include "support/program_run.hpp"
-#include "support/scene_on_device.hpp"
+#include "support/programs/program_run.hpp"
+#include "support/scenes/scene_on_device.hpp"
 
 namespace dapple {
 namespace {

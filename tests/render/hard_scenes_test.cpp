@@ -1,16 +1,17 @@
 // Prefiltered pictures of 256 samples of scenes that leak or darken where opacities of nodes are
-// multiplied (support/hard_scenes.hpp), against exact ones of the same samples: mean, RMSE, RMSE of
-// the worst window of 32x32 pixels, and what small steps of the camera change. With the footprint
-// that a render chooses, and with the default one, since a smaller one hides faults of the model.
-#include "support/hard_scenes.hpp"
+// multiplied (support/scenes/hard_scenes.hpp), against exact ones of the same samples: mean, RMSE,
+// RMSE of the worst window of 32x32 pixels, and what small steps of the camera change. With the
+// footprint that a render chooses, and with the default one, since a smaller one hides faults of
+// the model.
+#include "support/scenes/hard_scenes.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "support/camera_steps.hpp"
 #include "support/compare_films.hpp"
+#include "support/scenes/camera_steps.hpp"
 
 namespace dapple {
 namespace {

@@ -10,10 +10,10 @@
 #include <random>
 
 #include "render/partial/checkpoint.hpp"
-#include "support/film_files.hpp"
-#include "support/hanging_program.hpp"
-#include "support/processor_time.hpp"
-#include "support/running_program.hpp"
+#include "support/files/film_files.hpp"
+#include "support/programs/hanging_program.hpp"
+#include "support/programs/processor_time.hpp"
+#include "support/programs/running_program.hpp"
 #include "support/sanitizers.hpp"
 
 namespace dapple {

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "support/program_run.hpp"
+#include "support/programs/program_run.hpp"
 #include "support/sanitizers.hpp"
 
 namespace dapple {

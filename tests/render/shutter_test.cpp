@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "dapple/error.hpp"
-#include "support/scene_on_device.hpp"
-#include "support/smooth_shapes.hpp"
-#include "support/swaying_tree.hpp"
+#include "support/scenes/scene_on_device.hpp"
+#include "support/scenes/smooth_shapes.hpp"
+#include "support/scenes/swaying_tree.hpp"
 
 namespace dapple {
 namespace {

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "camera/view.hpp"
-#include "support/scene_on_device.hpp"
-#include "support/traced_scenes.hpp"
+#include "support/scenes/scene_on_device.hpp"
+#include "support/scenes/traced_scenes.hpp"
 
 namespace dapple {
 namespace {

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "support/compare_films.hpp"
-#include "support/hard_scenes.hpp"
+#include "support/scenes/hard_scenes.hpp"
 
 namespace dapple {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "support/scene_on_device.hpp"
+#include "support/scenes/scene_on_device.hpp"
 
 namespace dapple {
 namespace {

@@ -8,8 +8,8 @@
 #include <numeric>
 
 #include "dapple/error.hpp"
-#include "support/scene_on_device.hpp"
-#include "support/smooth_shapes.hpp"
+#include "support/scenes/scene_on_device.hpp"
+#include "support/scenes/smooth_shapes.hpp"
 
 namespace dapple {
 namespace {

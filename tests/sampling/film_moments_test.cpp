@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "render/picture.hpp"
-#include "support/scene_on_device.hpp"
+#include "support/scenes/scene_on_device.hpp"
 
 namespace dapple {
 namespace {

@@ -1,6 +1,6 @@
 // Lights that a scene may get: sun and sky stand where the camera says, and are as bright as they
 // are said to be; the key light hangs up left in front and gives an irradiance of about one.
-#include "scene/default_lights.hpp"
+#include "scene/lights/default_lights.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "scene/images/dome_image.hpp"
-#include "support/point_on_ground.hpp"
+#include "support/scenes/point_on_ground.hpp"
 
 namespace dapple {
 namespace {

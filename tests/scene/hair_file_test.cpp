@@ -10,7 +10,7 @@
 #include <limits>
 
 #include "dapple/moving_scene.hpp"
-#include "support/hair_builder.hpp"
+#include "support/files/hair_builder.hpp"
 
 namespace dapple::test {
 namespace {

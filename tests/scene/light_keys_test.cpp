@@ -4,7 +4,7 @@
 #include <set>
 #include <sstream>
 
-#include "support/lights_text.hpp"
+#include "support/files/lights_text.hpp"
 
 namespace dapple {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "support/lights_text.hpp"
+#include "support/files/lights_text.hpp"
 
 namespace dapple {
 namespace {

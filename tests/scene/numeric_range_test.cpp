@@ -1,6 +1,6 @@
 // Scenes with very small and very large numbers: each gives a picture of finite pixels or an Error
 // of kind input. Inside the promised range each gives a picture.
-#include "scene/numeric_range.hpp"
+#include "scene/check/numeric_range.hpp"
 
 #include <gtest/gtest.h>
 

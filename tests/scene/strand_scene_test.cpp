@@ -8,7 +8,7 @@
 #include <filesystem>
 
 #include "dapple/error.hpp"
-#include "support/curly_strands.hpp"
+#include "support/scenes/curly_strands.hpp"
 
 namespace dapple {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "compare/difference.hpp"
-#include "support/film_files.hpp"
+#include "support/files/film_files.hpp"
 
 namespace dapple::compare_test {
 

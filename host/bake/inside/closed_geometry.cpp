@@ -12,7 +12,7 @@
 
 #include "bake/inside/closed_parts.hpp"
 #include "sampling/random_choice.hpp"
-#include "scene/invertible.hpp"
+#include "scene/check/invertible.hpp"
 
 namespace dapple {
 namespace {

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <span>
 
-#include "bake/surface_samples.hpp"
+#include "bake/samples/surface_samples.hpp"
 #include "bake/vertex_groups.hpp"
 #include "bvh/opacity/connected_vertices.hpp"
 #include "bvh/opacity/triangle_opacity.hpp"

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "bake/inside/closed_geometry.hpp"
-#include "bake/sample_tracer.hpp"
+#include "bake/samples/sample_tracer.hpp"
 
 namespace dapple {
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "bake/surface_samples.hpp"
+#include "bake/samples/surface_samples.hpp"
 
 namespace dapple {
 namespace {

@@ -2,7 +2,7 @@
 // texture, and functions that trace samples. Out: AO, bent normals and irradiance of all texels.
 #pragma once
 
-#include "bake/sample_rounds.hpp"
+#include "bake/samples/sample_rounds.hpp"
 
 namespace dapple {
 

@@ -12,7 +12,7 @@
 #include "bake/texture/packing.hpp"
 #include "bake/texture/texel_cover.hpp"
 #include "dapple/error.hpp"
-#include "scene/invertible.hpp"
+#include "scene/check/invertible.hpp"
 
 namespace dapple {
 namespace {

@@ -11,7 +11,7 @@
 #include "bake/texture/texture_layout.hpp"
 #include "dapple/error.hpp"
 #include "render/option_check.hpp"
-#include "scene/scene_check.hpp"
+#include "scene/check/scene_check.hpp"
 
 namespace dapple {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "bvh/build/scene_objects.hpp"
 #include "bvh/build/top_level.hpp"
-#include "scene/scene_check.hpp"
+#include "scene/check/scene_check.hpp"
 
 namespace dapple {
 

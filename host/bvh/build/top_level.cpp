@@ -11,8 +11,8 @@
 
 #include "bvh/opacity/quantize_opacity.hpp"
 #include "dapple/error.hpp"
-#include "scene/finite.hpp"
-#include "scene/scene_check.hpp"
+#include "scene/check/finite.hpp"
+#include "scene/check/scene_check.hpp"
 
 namespace dapple {
 namespace {

@@ -13,7 +13,7 @@
 #include "bvh/refit/texel_sizes.hpp"
 #include "bvh/storage/object_key.hpp"
 #include "dapple/bvh.hpp"
-#include "scene/scene_check.hpp"
+#include "scene/check/scene_check.hpp"
 
 namespace dapple {
 namespace {

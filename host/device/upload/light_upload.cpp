@@ -7,7 +7,7 @@
 
 #include "bvh/opacity/triangle_opacity.hpp"
 #include "dapple/error.hpp"
-#include "scene/rect_axes.hpp"
+#include "scene/lights/rect_axes.hpp"
 
 namespace dapple {
 namespace {

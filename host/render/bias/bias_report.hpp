@@ -7,8 +7,8 @@
 #include "camera/view.hpp"
 #include "dapple/bias.hpp"
 #include "dapple/render.hpp"
-#include "film/bias_sums.hpp"
-#include "film/film_sums.hpp"
+#include "film/sums/bias_sums.hpp"
+#include "film/sums/film_sums.hpp"
 #include "film/traced_picture.hpp"
 
 namespace dapple {

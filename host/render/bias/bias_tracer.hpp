@@ -7,7 +7,7 @@
 
 #include "camera/view.hpp"
 #include "device/upload/scene_upload.hpp"
-#include "film/bias_sums.hpp"
+#include "film/sums/bias_sums.hpp"
 #include "passes/queues.hpp"
 #include "sampling/exact_samples.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "film/film_sums.hpp"
+#include "film/sums/film_sums.hpp"
 #include "render/kept_scene.hpp"
 #include "sampling/footprint_choice.hpp"
 

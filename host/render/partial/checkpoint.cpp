@@ -13,7 +13,7 @@
 #include "dapple/error.hpp"
 #include "dapple/shared/ray.h"
 #include "files/sealed_file.hpp"
-#include "film/matte_sums.hpp"
+#include "film/sums/matte_sums.hpp"
 
 namespace dapple {
 namespace {

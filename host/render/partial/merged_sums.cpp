@@ -7,7 +7,7 @@
 
 #include "camera/camera_splitting.hpp"
 #include "dapple/error.hpp"
-#include "film/wrapped_sum.hpp"
+#include "film/sums/wrapped_sum.hpp"
 
 namespace dapple {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "camera/view.hpp"
 #include "film/cryptomatte.hpp"
-#include "film/film_sums.hpp"
+#include "film/sums/film_sums.hpp"
 
 namespace dapple {
 

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "dapple/error.hpp"
-#include "scene/finite.hpp"
+#include "scene/check/finite.hpp"
 
 namespace dapple {
 namespace {

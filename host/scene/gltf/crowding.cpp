@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <unordered_map>
 
-#include "scene/invertible.hpp"
+#include "scene/check/invertible.hpp"
 #include "scene/message.hpp"
 
 namespace dapple::gltf {

@@ -5,10 +5,10 @@
 #include <map>
 #include <optional>
 
-#include "scene/gltf/accessor.hpp"
-#include "scene/gltf/deformation.hpp"
-#include "scene/gltf/extension_names.hpp"
+#include "scene/gltf/document/accessor.hpp"
+#include "scene/gltf/document/extension_names.hpp"
 #include "scene/gltf/mesh.hpp"
+#include "scene/gltf/pose/deformation.hpp"
 #include "scene/message.hpp"
 
 namespace dapple::gltf {

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "dapple/scene.hpp"
-#include "scene/gltf/accessor.hpp"
-#include "scene/gltf/document.hpp"
-#include "scene/gltf/hierarchy.hpp"
+#include "scene/gltf/document/accessor.hpp"
+#include "scene/gltf/document/document.hpp"
 #include "scene/gltf/material.hpp"
+#include "scene/gltf/pose/hierarchy.hpp"
 
 namespace dapple::gltf {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "scene/gltf/extension_names.hpp"
+#include "scene/gltf/document/extension_names.hpp"
 #include "scene/message.hpp"
 
 namespace dapple::gltf {

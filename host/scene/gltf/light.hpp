@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "dapple/scene.hpp"
-#include "scene/gltf/document.hpp"
-#include "scene/gltf/hierarchy.hpp"
+#include "scene/gltf/document/document.hpp"
+#include "scene/gltf/pose/hierarchy.hpp"
 
 namespace dapple::gltf {
 

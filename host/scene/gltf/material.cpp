@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/gltf/extension_names.hpp"
+#include "scene/gltf/document/extension_names.hpp"
 #include "scene/gltf/texture.hpp"
 #include "scene/gltf/topology.hpp"
 #include "scene/message.hpp"

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "scene/gltf/extension_names.hpp"
+#include "scene/gltf/document/extension_names.hpp"
 #include "scene/gltf/topology.hpp"
 #include "scene/gltf/vertices.hpp"
 #include "scene/message.hpp"

@@ -6,9 +6,9 @@
 #include <string>
 
 #include "dapple/scene.hpp"
-#include "scene/gltf/animation.hpp"
-#include "scene/gltf/document.hpp"
+#include "scene/gltf/document/document.hpp"
 #include "scene/gltf/material.hpp"
+#include "scene/gltf/pose/animation.hpp"
 
 namespace dapple::gltf {
 

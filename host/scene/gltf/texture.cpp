@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "dapple/error.hpp"
-#include "scene/gltf/uri.hpp"
+#include "scene/gltf/document/uri.hpp"
 #include "scene/images/image.hpp"
 #include "scene/message.hpp"
 

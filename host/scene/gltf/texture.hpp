@@ -8,7 +8,7 @@
 #include <tuple>
 
 #include "dapple/scene.hpp"
-#include "scene/gltf/document.hpp"
+#include "scene/gltf/document/document.hpp"
 #include "scene/images/image.hpp"
 
 namespace dapple::gltf {

@@ -5,7 +5,7 @@
 #include <array>
 #include <limits>
 
-#include "scene/gltf/accessor.hpp"
+#include "scene/gltf/document/accessor.hpp"
 #include "scene/message.hpp"
 
 namespace dapple::gltf {

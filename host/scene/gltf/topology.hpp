@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/gltf/document.hpp"
+#include "scene/gltf/document/document.hpp"
 
 namespace dapple::gltf {
 

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "dapple/scene.hpp"
-#include "scene/gltf/accessor.hpp"
-#include "scene/gltf/deformation.hpp"
-#include "scene/gltf/document.hpp"
+#include "scene/gltf/document/accessor.hpp"
+#include "scene/gltf/document/document.hpp"
 #include "scene/gltf/material.hpp"
+#include "scene/gltf/pose/deformation.hpp"
 
 namespace dapple::gltf {
 

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "dapple/error.hpp"
-#include "scene/finite.hpp"
+#include "scene/check/finite.hpp"
 #include "scene/images/dome_image.hpp"
 
 namespace dapple {

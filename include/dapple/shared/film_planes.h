@@ -1,6 +1,6 @@
 /* The order of planes in the film's sums, which the kernels of kernels/film and kernels/lights write and
    host/film reads: planes of the surface, which every picture has at its beginning, and those of a pass,
-   from its first one on. FilmLayout (host/film/film_sums.hpp) knows where each pass begins. */
+   from its first one on. FilmLayout (host/film/sums/film_sums.hpp) knows where each pass begins. */
 #ifndef DAPPLE_SHARED_FILM_PLANES_H
 #define DAPPLE_SHARED_FILM_PLANES_H
 

@@ -4,8 +4,8 @@
 #include <numbers>
 
 #include "dapple/shared/bvh_node.h"
-#include "support/scene_on_device.hpp"
-#include "support/smooth_shapes.hpp"
+#include "support/scenes/scene_on_device.hpp"
+#include "support/scenes/smooth_shapes.hpp"
 
 namespace dapple {
 namespace {

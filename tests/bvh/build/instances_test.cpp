@@ -2,7 +2,7 @@
 // occlude as their triangles in world space do.
 #include <gtest/gtest.h>
 
-#include "support/scene_on_device.hpp"
+#include "support/scenes/scene_on_device.hpp"
 
 namespace dapple {
 namespace {

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "bvh/build/object_bvh.hpp"
-#include "support/uniform_map.hpp"
+#include "support/scenes/uniform_map.hpp"
 
 namespace dapple {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "bvh/build/object_bvh.hpp"
 #include "bvh/opacity/triangle_opacity.hpp"
-#include "support/uniform_map.hpp"
+#include "support/scenes/uniform_map.hpp"
 
 namespace dapple {
 namespace {

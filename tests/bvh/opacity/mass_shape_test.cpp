@@ -11,7 +11,7 @@
 #include "bvh/opacity/quantize_opacity.hpp"
 #include "dapple/shared/opacity.h"
 #include "support/random_direction.hpp"
-#include "support/uniform_map.hpp"
+#include "support/scenes/uniform_map.hpp"
 
 namespace dapple {
 namespace {

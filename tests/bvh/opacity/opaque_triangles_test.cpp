@@ -5,7 +5,7 @@
 
 #include "bvh/opacity/closed_surface.hpp"
 #include "bvh/opacity/wall.hpp"
-#include "support/smooth_shapes.hpp"
+#include "support/scenes/smooth_shapes.hpp"
 
 namespace dapple {
 namespace {

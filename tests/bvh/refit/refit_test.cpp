@@ -9,8 +9,8 @@
 #include "bvh/build/quantize_boxes.hpp"
 #include "bvh/opacity/prefilter.hpp"
 #include "support/failing_opencl.hpp"
-#include "support/scene_on_device.hpp"
-#include "support/swaying_tree.hpp"
+#include "support/scenes/scene_on_device.hpp"
+#include "support/scenes/swaying_tree.hpp"
 
 namespace dapple {
 namespace {

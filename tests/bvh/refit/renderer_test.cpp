@@ -11,9 +11,9 @@
 #include "dapple/error.hpp"
 #include "device/context.hpp"
 #include "support/sanitizers.hpp"
-#include "support/scene_on_device.hpp"
-#include "support/swaying_tree.hpp"
-#include "support/traced_scenes.hpp"
+#include "support/scenes/scene_on_device.hpp"
+#include "support/scenes/swaying_tree.hpp"
+#include "support/scenes/traced_scenes.hpp"
 
 namespace dapple {
 namespace {

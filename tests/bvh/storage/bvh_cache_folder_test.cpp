@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include "dapple/bvh.hpp"
-#include "support/film_files.hpp"
+#include "support/files/film_files.hpp"
 
 namespace dapple {
 namespace {

@@ -15,8 +15,8 @@
 #include "bvh/storage/object_key.hpp"
 #include "dapple/bvh.hpp"
 #include "files/sealed_file.hpp"
-#include "support/curly_strands.hpp"
-#include "support/film_files.hpp"
+#include "support/files/film_files.hpp"
+#include "support/scenes/curly_strands.hpp"
 
 namespace dapple {
 namespace {

@@ -9,7 +9,7 @@
 #include "bvh/build/object_bvh.hpp"
 #include "bvh/build/quantize_boxes.hpp"
 #include "bvh/storage/segment_block.hpp"
-#include "support/curly_strands.hpp"
+#include "support/scenes/curly_strands.hpp"
 
 namespace dapple {
 namespace {

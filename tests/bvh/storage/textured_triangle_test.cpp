@@ -13,7 +13,7 @@
 #include "dapple/bvh.hpp"
 #include "dapple/error.hpp"
 #include "device/upload/scene_upload.hpp"
-#include "support/scene_on_device.hpp"
+#include "support/scenes/scene_on_device.hpp"
 #include "support/test_kernel.hpp"
 
 namespace dapple {

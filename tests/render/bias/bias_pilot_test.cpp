@@ -6,7 +6,7 @@
 
 #include "camera/camera_splitting.hpp"
 #include "support/failing_opencl.hpp"
-#include "support/scene_on_device.hpp"
+#include "support/scenes/scene_on_device.hpp"
 
 namespace dapple {
 namespace {

@@ -3,8 +3,8 @@
 // 0.01. Frames of `dapple render --frames` do not choose: they have the footprint of the first.
 #include <gtest/gtest.h>
 
-#include "support/camera_steps.hpp"
-#include "support/hard_scenes.hpp"
+#include "support/scenes/camera_steps.hpp"
+#include "support/scenes/hard_scenes.hpp"
 
 namespace dapple {
 namespace {

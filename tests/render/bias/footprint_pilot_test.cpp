@@ -6,7 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "support/scene_on_device.hpp"
+#include "support/scenes/scene_on_device.hpp"
 
 namespace dapple {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <functional>
 
-#include "support/film_files.hpp"
+#include "support/files/film_files.hpp"
 
 namespace dapple {
 namespace {

@@ -10,9 +10,9 @@
 #include <random>
 
 #include "render/partial/checkpoint.hpp"
-#include "support/film_files.hpp"
-#include "support/scene_on_device.hpp"
-#include "support/swaying_tree.hpp"
+#include "support/files/film_files.hpp"
+#include "support/scenes/scene_on_device.hpp"
+#include "support/scenes/swaying_tree.hpp"
 
 namespace dapple {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "camera/view.hpp"
 #include "render/partial/checkpoint.hpp"
-#include "support/film_files.hpp"
+#include "support/files/film_files.hpp"
 
 namespace dapple {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "render/partial/checkpoint.hpp"
 #include "render/picture.hpp"
-#include "support/film_files.hpp"
-#include "support/scene_on_device.hpp"
+#include "support/files/film_files.hpp"
+#include "support/scenes/scene_on_device.hpp"
 
 namespace dapple {
 namespace {

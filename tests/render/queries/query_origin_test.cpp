@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "render/queries/point_occlusion.hpp"
-#include "support/scene_on_device.hpp"
+#include "support/scenes/scene_on_device.hpp"
 
 namespace dapple {
 namespace {

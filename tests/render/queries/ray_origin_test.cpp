@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "support/point_on_ground.hpp"
+#include "support/scenes/point_on_ground.hpp"
 
 namespace dapple {
 namespace {

@@ -1,5 +1,5 @@
 // What edits of a glTF document left without use is dropped, and all else refers to what it did.
-#include "scene/gltf/compaction.hpp"
+#include "scene/gltf/edit/compaction.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "dapple/moving_scene.hpp"
-#include "support/gltf_builder.hpp"
+#include "support/files/gltf_builder.hpp"
 
 namespace dapple::test {
 namespace {

@@ -1,7 +1,7 @@
 // Colours of glTF files: factors, textures and COLOR_0, read only if they are requested.
 #include <gtest/gtest.h>
 
-#include "support/gltf_builder.hpp"
+#include "support/files/gltf_builder.hpp"
 
 namespace dapple::test {
 namespace {

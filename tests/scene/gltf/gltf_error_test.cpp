@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
-#include "support/gltf_builder.hpp"
+#include "support/files/gltf_builder.hpp"
 
 namespace dapple::test {
 namespace {

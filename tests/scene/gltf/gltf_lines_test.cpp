@@ -3,7 +3,7 @@
 // triangles.
 #include <gtest/gtest.h>
 
-#include "support/gltf_builder.hpp"
+#include "support/files/gltf_builder.hpp"
 
 namespace dapple::test {
 namespace {

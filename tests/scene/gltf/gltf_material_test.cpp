@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "support/gltf_builder.hpp"
+#include "support/files/gltf_builder.hpp"
 
 namespace dapple::test {
 namespace {

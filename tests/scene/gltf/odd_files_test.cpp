@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "support/gltf_builder.hpp"
+#include "support/files/gltf_builder.hpp"
 
 namespace dapple::test {
 namespace {

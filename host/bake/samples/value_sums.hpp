@@ -1,0 +1,146 @@
+// Turns results at samples into values of places, which are vertices or texels. In: AO and bent
+// normals, or irradiance, of both sides of each sample. Out: one value for each place, and how many
+// more samples it needs.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "bake/samples/sample_tracer.hpp"
+#include "dapple/bake.hpp"
+
+namespace dapple {
+
+/// The small connected parts of a surface, such as leaves, that its places belong to.
+struct SmallParts {
+  static constexpr std::uint32_t kLarge = ~0u;
+  std::vector<std::uint32_t> of_place;  ///< kLarge: of a part that is not small
+  std::size_t count = 0;
+};
+
+/// The places of each small part, in ascending order.
+class PlacesOfParts {
+ public:
+  explicit PlacesOfParts(const SmallParts& parts);
+  [[nodiscard]] std::span<const std::uint32_t> operator[](std::size_t part) const {
+    return std::span(places_).subspan(begin_[part], begin_[part + 1] - begin_[part]);
+  }
+
+ private:
+  std::vector<std::uint32_t> begin_, places_;
+};
+
+/// The value of a place.
+struct PlaceValue {
+  float ao = 0;
+  V3f bent{0, 0, 0};   ///< unit length, or zero
+  bool known = false;  ///< false: inside closed geometry, from where nothing is seen
+  bool dark = false;   ///< known, and nothing is seen from there, as in a closed room
+};
+
+class ValueSums {
+ public:
+  /// `lights`: 0 for AO; else the scalar of a sample is the brightness of so many lights.
+  ValueSums(SmallParts parts, BakeSides sides, std::size_t lights = 0);
+
+  /// Number of places.
+  [[nodiscard]] std::size_t size() const { return of_place_.size(); }
+
+  /// How samples are taken: `rays` of each, and whether each is in one of several placements.
+  void set_sampling(int rays, bool several_placements);
+
+  /// For each place variance_factor() of its samples; without them, all 1.
+  void set_variance_factors(std::vector<float> factors) { factors_ = std::move(factors); }
+
+  /// Adds what was found at samples on the sides that were traced. Those inside closed geometry do
+  /// not count for values.
+  void add(std::span<const SurfaceSample> samples, const TracedSamples& found);
+
+  /// Chooses the brighter side of each small part and of each place of larger ones, from the
+  /// samples so far. Where neither is surely the brighter one, both count, each by the probability
+  /// that it is. For BakeSides::mean both count the same.
+  void choose_sides();
+
+  /// Whether a side of a place counts for its value.
+  [[nodiscard]] bool counts(std::uint32_t place, bool back) const {
+    return back ? share_of_back_[place] > 0 : share_of_back_[place] < 1;
+  }
+
+  /// Whether a place has samples that count.
+  [[nodiscard]] bool is_sampled(std::uint32_t place) const {
+    return of_place_[place].front.weight > 0 || of_place_[place].back.weight > 0;
+  }
+
+  /// Whether samples of a place lie inside closed geometry.
+  [[nodiscard]] bool has_inside(std::uint32_t place) const {
+    return of_place_[place].inside_weight > 0;
+  }
+
+  /// Whether all samples of a place do.
+  [[nodiscard]] bool is_inside(std::uint32_t place) const {
+    return has_inside(place) && !is_sampled(place);
+  }
+
+  /// The squared standard error of each place's scalar, estimated from its samples and from those
+  /// of places of similar value; relative to the largest unoccluded value so far (of AO: 1).
+  [[nodiscard]] std::vector<float> squared_errors() const;
+
+  /// For each place, by what factor the number of its samples must grow for a standard error of
+  /// `target`; 1: enough. Places that may be hidden need more than others.
+  [[nodiscard]] std::vector<float> missing_samples(float target) const;
+
+  /// The values of all places. Places without samples have AO 1: there is nothing to occlude.
+  [[nodiscard]] std::vector<PlaceValue> values() const;
+
+  /// The irradiance of a light at all places; 0 at places without samples.
+  [[nodiscard]] std::vector<V3f> light_values(std::size_t light) const;
+
+ private:
+  /// Sums over the samples of one side.
+  struct Side {
+    float weight = 0, weight_squares = 0, sum = 0, sum_squares = 0;
+    V3f bent{0, 0, 0};
+    void add(float w, const SideValue& value);
+    [[nodiscard]] float mean() const { return weight > 0 ? sum / weight : 0; }
+    /// Number of samples of equal weight that would have the same standard error.
+    [[nodiscard]] float count() const;
+    /// Sum of squared deviations, for count() - 1 degrees of freedom.
+    [[nodiscard]] float squared_deviations() const;
+  };
+  struct BothSides {
+    Side front, back;
+    float inside_weight = 0, inside_squares = 0;  ///< of samples inside closed geometry
+    [[nodiscard]] float inside_count() const;
+  };
+  class PooledVariance;
+  /// How much brighter the backs of places are than their fronts: sums over places that have both.
+  struct BackMinusFront {
+    float difference = 0, square_error = 0;
+    std::size_t places = 0;
+    void add(const BothSides& values, const PooledVariance& variance);
+    /// The weight of the back in the value: 0 or 1 where a side surely is the brighter one.
+    [[nodiscard]] float share_of_back() const;
+  };
+
+  void add(const SurfaceSample& sample, const TracedSamples& found, std::size_t index);
+  void add_inside(const SurfaceSample& sample);
+  [[nodiscard]] float scale() const { return largest_ > 0 ? largest_ : 1; }
+  [[nodiscard]] bool is_dark(std::uint32_t place) const;
+  [[nodiscard]] PooledVariance pooled_variance() const;
+  /// share_of_back_ of a place, whose sides may lack samples.
+  [[nodiscard]] float sampled_share_of_back(std::uint32_t place) const;
+
+  BakeSides sides_;
+  SmallParts parts_;
+  PlacesOfParts places_of_part_;
+  std::vector<BothSides> of_place_;
+  std::vector<float> share_of_back_;  ///< by place, [0,1]: the weight of its back
+  std::vector<float> factors_;        ///< by place, of the variance of means; empty: 1
+  int rays_ = kRaysPerSample;         ///< of a sample
+  bool several_placements_ = false;
+  float largest_ = 0;  ///< the largest TracedSamples::largest
+  std::size_t lights_;
+  std::vector<V3f> front_light_, back_light_;  ///< weighted sums, the lights of a place together
+};
+
+}  // namespace dapple

@@ -1,0 +1,395 @@
+#include "commands/bake/baked_attributes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+
+#include "bake/samples/surface_samples.hpp"
+#include "dapple/error.hpp"
+#include "film/light_layers.hpp"
+#include "scene/check/invertible.hpp"
+
+namespace dapple {
+namespace {
+
+using gltf::NewAttribute;
+using gltf::SourceFile;
+
+/// A primitive of the file, by its mesh and its number there.
+using Primitive = std::pair<std::uint32_t, std::uint32_t>;
+
+/// The attribute of EXT_mesh_gpu_instancing that engines such as three.js show as a colour: VEC3.
+constexpr const char* kInstanceColor = "_COLOR_0";
+
+/// Scales that differ by less are one scale and its rounding.
+constexpr float kEqualScales = 1e-4f;
+
+/// L L^T of the linear part L of the matrices of a mesh's placements, the mean of all, each
+/// relative to its trace: directions v become normals v L L^T. It does not depend on rotations. The
+/// identity where all scales are equal.
+Imath::M33f metric_of(const Scene& scene, std::size_t mesh) {
+  Imath::M33f sum(0.0f);
+  for (const Instance& instance : scene.instances) {
+    if (instance.mesh != mesh || !is_invertible(instance.to_world)) continue;
+    Imath::M33f linear;
+    for (int i = 0; i < 3; ++i)
+      for (int k = 0; k < 3; ++k) linear[i][k] = instance.to_world[i][k];
+    const Imath::M33f metric = linear * linear.transposed();
+    sum += metric * (3 / (metric[0][0] + metric[1][1] + metric[2][2]));
+  }
+  const float mean = (sum[0][0] + sum[1][1] + sum[2][2]) / 3;
+  if (!(mean > 0) || !std::isfinite(mean)) return {};
+  sum /= mean;
+  return sum.equalWithAbsError(Imath::M33f(), kEqualScales) ? Imath::M33f() : sum;
+}
+
+/// Bent normals as NORMAL has them, which viewers transform with the inverse transpose of matrices,
+/// not as directions. Those of what is brighter from behind are mirrored, in the world, to the
+/// front of their triangles: NORMAL is turned round where the back is seen. Vertices that see
+/// nothing keep their normals.
+BakedMesh as_normals(const Mesh& mesh, BakedMesh baked, const Imath::M33f& metric) {
+  if (baked.bent.empty()) return baked;
+  std::vector<V3f> normals(mesh.positions.size(), V3f(0, 0, 0));
+  for (std::size_t t = 0; t < mesh.primitive_count(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) normals[mesh.indices[3 * t + k]] += area_vector(mesh, t);
+  const Imath::M33f inverse = metric.inverse();
+  for (std::size_t v = 0; v < baked.bent.size(); ++v) {
+    const V3f front = normals[v].normalized(), bent = baked.bent[v];
+    if (!(bent.length2() > 0)) {  // nothing is seen from there
+      baked.bent[v] = mesh.normals.empty() ? front : mesh.normals[v];
+      continue;
+    }
+    const float along = bent.dot(front);
+    baked.bent[v] = bent * metric;
+    if (along < 0) baked.bent[v] -= front * (2 * along / (front * inverse).dot(front));
+    if (metric != Imath::M33f()) baked.bent[v].normalize();
+  }
+  return baked;
+}
+
+/// Sums over the meshes of a scene that show the same vertices of the file: poses and placements.
+struct VertexSums {
+  std::vector<float> ao, weight;
+  std::vector<V3f> bent;
+  std::vector<std::vector<V3f>> light;  ///< by light
+  std::vector<std::uint32_t> owner;     ///< 1 + the mesh of the file that uses a vertex, or 0
+
+  VertexSums(std::size_t count, const BakedMesh& like)
+      : ao(count), weight(count), light(like.light.size()), owner(count) {
+    if (!like.bent.empty()) bent.resize(count, V3f(0));
+    for (std::vector<V3f>& one : light) one.resize(count, V3f(0));
+  }
+
+  /// Whether no other mesh of the file uses the vertices.
+  [[nodiscard]] bool are_free(const VertexSource& source) const {
+    for (std::uint32_t i = 0; i < source.count; ++i) {
+      const std::uint32_t by = owner[vertex_of(source, i)];
+      if (by != 0 && by != source.mesh + 1) return false;
+    }
+    return true;
+  }
+
+  void add(const VertexSource& source, const BakedMesh& baked) {
+    for (std::uint32_t i = 0; i < source.count; ++i) {
+      const std::uint32_t to = vertex_of(source, i), from = source.first + i;
+      owner[to] = source.mesh + 1;
+      ao[to] += baked.ao[from];
+      weight[to] += 1;
+      if (!baked.bent.empty()) bent[to] += baked.bent[from];
+      for (std::size_t l = 0; l < baked.light.size(); ++l) light[l][to] += baked.light[l][from];
+    }
+  }
+
+  /// AO becomes means, and 1 where there is none.
+  void divide() {
+    for (std::size_t v = 0; v < ao.size(); ++v) ao[v] = weight[v] > 0 ? ao[v] / weight[v] : 1.0f;
+  }
+
+ private:
+  static std::uint32_t vertex_of(const VertexSource& source, std::uint32_t i) {
+    return source.used.empty() ? i : source.used[i];
+  }
+};
+
+/// The sums of all primitives of a file. Primitives may share their vertices. Meshes that use
+/// different ones of these share a set of sums; those that use the same have sets of their own.
+struct FileSums {
+  std::map<gltf::VertexKey, std::vector<VertexSums>> sets;
+  std::map<Primitive, std::pair<gltf::VertexKey, std::uint32_t>> primitives;  ///< and their sets
+
+  FileSums(const SourceFile& file, const Scene& scene, const std::vector<BakedMesh>& meshes,
+           const std::string& attribute) {
+    using Use = std::pair<const VertexSource*, const BakedMesh*>;
+    std::map<std::pair<gltf::VertexKey, std::uint32_t>, std::vector<Use>> uses;  // by mesh of file
+    for (std::size_t m = 0; m < meshes.size(); ++m) {
+      if (meshes[m].ao.empty()) continue;
+      for (const VertexSource& source : scene.meshes[m].sources) {
+        const auto key = file.vertex_key(source.mesh, source.primitive, attribute);
+        uses[{key, source.mesh}].emplace_back(&source, &meshes[m]);
+      }
+    }
+    for (const auto& [by, of_mesh] : uses) {
+      std::vector<VertexSums>& all = sets[by.first];
+      const auto are_free = [&](const VertexSums& set) {
+        return std::all_of(of_mesh.begin(), of_mesh.end(),
+                           [&](const Use& use) { return set.are_free(*use.first); });
+      };
+      const auto set =
+          static_cast<std::uint32_t>(std::find_if(all.begin(), all.end(), are_free) - all.begin());
+      const VertexSource& first = *of_mesh.front().first;
+      if (set == all.size())
+        all.emplace_back(file.vertex_count(first.mesh, first.primitive), *of_mesh.front().second);
+      for (const auto& [source, baked] : of_mesh) {
+        all[set].add(*source, *baked);
+        primitives[{source->mesh, source->primitive}] = {by.first, set};
+      }
+    }
+    for (auto& [key, all] : sets)
+      for (VertexSums& set : all) set.divide();
+  }
+};
+
+NewAttribute color_attribute(gltf::PrimitiveColors colors, const VertexSums& sums,
+                             const BakeChannel& channel, bool multiply) {
+  NewAttribute attribute;
+  attribute.components = colors.components == 4 || channel.components == "a" ? 4 : 3;
+  if (colors.values.empty()) colors.values.assign(4 * sums.ao.size(), 1.0f);
+  for (std::size_t v = 0; v < sums.ao.size(); ++v) {
+    for (const char component : channel.components) {
+      const std::size_t c = component == 'r' ? 0 : component == 'g' ? 1 : component == 'b' ? 2 : 3;
+      float& value = colors.values[4 * v + c];
+      value = multiply ? value * sums.ao[v] : sums.ao[v];
+    }
+    for (std::size_t c = 0; c < attribute.components; ++c)
+      attribute.values.push_back(colors.values[4 * v + c]);
+  }
+  // The file's colours may be floats of any value.
+  if (std::all_of(attribute.values.begin(), attribute.values.end(),
+                  [](float value) { return value >= 0 && value <= 1; }))
+    attribute.storage = gltf::Storage::normalized16;
+  return attribute;
+}
+
+/// AO in one component of texture coordinates; the other one stays, or is 0.
+NewAttribute uv_attribute(std::vector<V2f> uvs, const VertexSums& sums,
+                          const BakeChannel& channel) {
+  uvs.resize(sums.ao.size(), V2f(0, 0));
+  NewAttribute attribute;
+  attribute.components = 2;
+  for (std::size_t v = 0; v < uvs.size(); ++v) {
+    uvs[v][channel.components == "x" ? 0 : 1] = sums.ao[v];
+    attribute.values.insert(attribute.values.end(), {uvs[v].x, uvs[v].y});
+  }
+  return attribute;
+}
+
+NewAttribute bent_attribute(const VertexSums& sums, const std::string& name) {
+  NewAttribute attribute;
+  attribute.name = name;
+  attribute.components = 3;
+  for (const V3f& bent : sums.bent) {
+    // Of vertices that no triangle uses, or that see nothing: glTF wants unit vectors.
+    const V3f unit = bent.length2() > 0 ? bent.normalized() : V3f(0, 1, 0);
+    attribute.values.insert(attribute.values.end(), {unit.x, unit.y, unit.z});
+  }
+  return attribute;
+}
+
+std::string light_attribute_name(const std::string& light) { return "_LIGHT_" + light; }
+
+NewAttribute light_attribute(const VertexSums& sums, std::size_t light, const std::string& name) {
+  NewAttribute attribute;
+  attribute.name = name;
+  attribute.components = 3;
+  for (std::size_t v = 0; v < sums.weight.size(); ++v) {
+    const V3f value = sums.light[light][v] / std::max(1.0f, sums.weight[v]);
+    attribute.values.insert(attribute.values.end(), {value.x, value.y, value.z});
+  }
+  return attribute;
+}
+
+NewAttribute ao_attribute(const SourceFile& file, const Primitive& at, const VertexSums& sums,
+                          const BakeTargets& targets) {
+  const BakeChannel& channel = targets.channel;
+  NewAttribute attribute;
+  if (const auto set = uv_set_of(channel.attribute)) {
+    attribute = uv_attribute(file.uvs(at.first, at.second, *set), sums, channel);
+  } else if (channel.attribute == "COLOR_0") {
+    attribute = color_attribute(file.colors(at.first, at.second), sums, channel, targets.multiply);
+  } else {
+    attribute.values = sums.ao;
+  }
+  attribute.name = channel.attribute;
+  return attribute;
+}
+
+/// Twice the areas of the meshes of a scene, in object space; 0 of strands.
+std::vector<double> areas_of_meshes(const Scene& scene) {
+  std::vector<double> areas;
+  for (const Mesh& mesh : scene.meshes) {
+    double area = 0;
+    for (std::size_t t = 0; t < mesh.primitive_count() && !mesh.has_strands(); ++t)
+      if (has_area(mesh, t)) area += double{area_vector(mesh, t).length()};
+    areas.push_back(area);
+  }
+  return areas;
+}
+
+/// Values like `kind`, one or more components of value(instance, component) each. The meshes that a
+/// node places together, such as its primitives that emit and those that do not, count by their
+/// areas. Nodes whose instances are all scaled to zero have none.
+template <class Value>
+std::vector<gltf::NodeValues> means_of_nodes(const Scene& scene, const gltf::NodeValues& kind,
+                                             Value value) {
+  const std::vector<double> areas = areas_of_meshes(scene);
+  struct NodeSums {
+    std::vector<double> weights, values;  // by placement; by placement and component
+  };
+  std::map<int, NodeSums> sums;
+  std::map<std::pair<int, std::uint32_t>, std::size_t> placements;  // of a node and mesh so far
+  std::set<int> placed;
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    const Instance& instance = scene.instances[i];
+    if (instance.node < 0 || scene.meshes[instance.mesh].has_strands()) continue;
+    if (is_invertible(instance.to_world)) placed.insert(instance.node);
+    NodeSums& sum = sums[instance.node];
+    const std::size_t placement = placements[{instance.node, instance.mesh}]++;
+    if (sum.weights.size() <= placement) {
+      sum.weights.resize(placement + 1);
+      sum.values.resize(sum.weights.size() * kind.components);
+    }
+    const double area = std::max(areas[instance.mesh], std::numeric_limits<double>::min());
+    sum.weights[placement] += area;
+    for (std::size_t c = 0; c < kind.components; ++c)
+      sum.values[placement * kind.components + c] += area * double{value(i, c)};
+  }
+  std::vector<gltf::NodeValues> nodes;
+  for (const auto& [node, sum] : sums) {
+    if (!placed.contains(node)) continue;
+    nodes.push_back(kind);
+    nodes.back().node = static_cast<std::uint32_t>(node);
+    for (std::size_t i = 0; i < sum.values.size(); ++i)
+      nodes.back().values.push_back(
+          static_cast<float>(sum.values[i] / sum.weights[i / kind.components]));
+  }
+  return nodes;
+}
+
+/// Three equal components in place of one.
+void make_grey(gltf::NodeValues& values) {
+  std::vector<float> grey;
+  for (const float value : values.values) grey.insert(grey.end(), 3, value);
+  values.components = 3;
+  values.values = std::move(grey);
+}
+
+void refuse_used_uvs(const SourceFile& file, const VertexSource& source, const BakeChannel& channel,
+                     std::uint32_t set) {
+  const std::string texture = file.texture_with_uvs(source.mesh, source.primitive, set);
+  if (texture.empty()) return;
+  throw Error(
+      ErrorKind::usage,
+      fmt::format("--channel is {}.{}, but {}, of mesh {} primitive {}, uses {}; choose a set "
+                  "that no texture uses, or an attribute such as _AO",
+                  channel.attribute, channel.components, texture, source.mesh, source.primitive,
+                  channel.attribute));
+}
+
+}  // namespace
+
+void check_channel(const SourceFile& file, const Scene& scene, const BakeChannel& channel) {
+  const auto set = uv_set_of(channel.attribute);
+  if (!set) return;
+  std::uint32_t most = 0;  // sets of a primitive
+  for (const Mesh& mesh : scene.meshes)
+    for (const VertexSource& source : mesh.sources)
+      most = std::max(most, file.uv_sets(source.mesh, source.primitive));
+  for (const Mesh& mesh : scene.meshes) {
+    for (const VertexSource& source : mesh.sources) {
+      if (!mesh.has_strands()) refuse_used_uvs(file, source, channel, *set);
+      const std::uint32_t sets = file.uv_sets(source.mesh, source.primitive);
+      if (*set <= sets) continue;
+      throw Error(ErrorKind::usage,
+                  fmt::format("--channel is {}.{}, but mesh {} primitive {} has {} set{} of "
+                              "texture coordinates; TEXCOORD_{} is the next one{}",
+                              channel.attribute, channel.components, source.mesh, source.primitive,
+                              sets, sets == 1 ? "" : "s", sets,
+                              sets == most ? ""
+                                           : fmt::format(". Others have up to {}: an attribute "
+                                                         "such as _AO fits all",
+                                                         most)));
+    }
+  }
+}
+
+void check_channel_spares_lights(const BakeChannel& channel, const std::vector<Light>& lights) {
+  for (const LightLayer& layer : light_layers(lights))
+    if (channel.attribute == light_attribute_name(layer.name))
+      throw Error(ErrorKind::usage,
+                  fmt::format("--channel is {}, which is the attribute of the light \"{}\"; choose "
+                              "another name, such as _AO",
+                              channel.attribute, layer.name));
+}
+
+std::vector<NewAttribute> baked_attributes(const SourceFile& file, const Scene& scene,
+                                           const BakeResult& result, const BakeTargets& targets) {
+  const BakeChannel& channel = targets.channel;
+  const bool to_normal = targets.bent_channel == "NORMAL";
+  std::vector<BakedMesh> turned;
+  for (std::size_t m = 0; to_normal && m < result.meshes.size(); ++m)
+    turned.push_back(as_normals(scene.meshes[m], result.meshes[m], metric_of(scene, m)));
+  const FileSums sums(file, scene, to_normal ? turned : result.meshes, channel.attribute);
+  std::vector<NewAttribute> attributes;
+  for (const auto& [primitive, from] : sums.primitives) {
+    const auto& [key, set] = from;
+    const VertexSums& of = sums.sets.at(key)[set];
+    const auto push = [&](NewAttribute attribute) {
+      attribute.mesh = primitive.first;
+      attribute.primitive = primitive.second;
+      attribute.set = set;
+      attributes.push_back(std::move(attribute));
+    };
+    push(ao_attribute(file, primitive, of, targets));
+    if (!of.bent.empty()) push(bent_attribute(of, targets.bent_channel));
+    for (std::size_t l = 0; l < of.light.size(); ++l)
+      push(light_attribute(of, l, light_attribute_name(result.light_names[l])));
+  }
+  return attributes;
+}
+
+bool multiplies_colors(const SourceFile& file, const Scene& scene, const BakeResult& result,
+                       const BakeTargets& targets) {
+  if (!targets.multiply || targets.channel.attribute != "COLOR_0") return false;
+  const std::uint32_t needed = targets.channel.components == "a" ? 4 : 3;
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+    if (result.meshes[m].ao.empty()) continue;
+    for (const VertexSource& source : scene.meshes[m].sources)
+      if (file.colors(source.mesh, source.primitive).components >= needed) return true;
+  }
+  return false;
+}
+
+std::vector<gltf::NodeValues> baked_nodes(const SourceFile& file, const Scene& scene,
+                                          const BakeResult& result, const std::string& attribute) {
+  std::vector<gltf::NodeValues> nodes = means_of_nodes(
+      scene, {{}, "ao", attribute, 1, {}},
+      [&](std::size_t instance, std::size_t) { return result.instance_ao[instance]; });
+  for (gltf::NodeValues& values : nodes)
+    if (attribute == kInstanceColor && file.has_gpu_instances(values.node)) make_grey(values);
+  for (std::size_t l = 0; l < result.instance_light.size(); ++l) {
+    const std::string& name = result.light_names[l];
+    for (gltf::NodeValues& values :
+         means_of_nodes(scene, {{}, "light_" + name, light_attribute_name(name), 3, {}},
+                        [&](std::size_t instance, std::size_t component) {
+                          return result.instance_light[l][instance][static_cast<int>(component)];
+                        }))
+      nodes.push_back(std::move(values));
+  }
+  return nodes;
+}
+
+}  // namespace dapple

@@ -1,0 +1,103 @@
+#include "commands/bake/side_copies.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "dapple/error.hpp"
+#include "files/output_file.hpp"
+#include "scene/gltf/document/uri.hpp"
+
+namespace dapple {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool have_same_content(const fs::path& a, const fs::path& b) {
+  std::error_code error;
+  if (fs::file_size(a, error) != fs::file_size(b, error) || error) return false;
+  std::ifstream stream_a(a, std::ios::binary), stream_b(b, std::ios::binary);
+  std::array<char, 1 << 16> bytes_a{}, bytes_b{};
+  while (stream_a && stream_b) {
+    stream_a.read(bytes_a.data(), bytes_a.size());
+    stream_b.read(bytes_b.data(), bytes_b.size());
+    const auto count = stream_a.gcount();
+    if (count != stream_b.gcount() ||
+        !std::equal(bytes_a.begin(), bytes_a.begin() + count, bytes_b.begin()))
+      return false;
+  }
+  return stream_a.eof() && stream_b.eof();
+}
+
+/// The folder of `path`, or the nearest one above that exists, which may be no folder.
+fs::path nearest_parent(const fs::path& path) {
+  std::error_code ignored;
+  fs::path parent = fs::absolute(path, ignored).lexically_normal().parent_path();
+  while (!fs::exists(fs::symlink_status(parent, ignored)) && parent.has_relative_path())
+    parent = parent.parent_path();
+  return parent;
+}
+
+/// Files that a .gltf names as buffers and images: an earlier bake's output may be there, with its
+/// copies. None if the file is not there, or is something else.
+std::set<fs::path> files_of(const fs::path& output) {
+  std::set<fs::path> files;
+  std::ifstream stream(output, std::ios::binary);
+  const nlohmann::json document = nlohmann::json::parse(stream, nullptr, false);
+  if (!document.is_object()) return files;
+  for (const char* array : {"buffers", "images"}) {
+    const auto found = document.find(array);
+    if (found == document.end() || !found->is_array()) continue;
+    for (const nlohmann::json& element : *found) {
+      if (!element.is_object() || !element.contains("uri") || !element["uri"].is_string()) continue;
+      const std::string name = gltf::percent_decode(element["uri"].get<std::string>());
+      files.insert((output.parent_path() / name).lexically_normal());
+    }
+  }
+  return files;
+}
+
+/// Throws Error usage if the file cannot be written. Folders below `parent` are not there yet.
+void check_target(const fs::path& to, const fs::path& parent) {
+  std::error_code ignored;
+  if (fs::is_directory(fs::absolute(to, ignored).parent_path(), ignored)) {
+    check_output_path(to.string());
+    remove_abandoned_beside(to.string());
+  } else if (access(parent.c_str(), W_OK | X_OK) != 0) {
+    throw Error(ErrorKind::usage, parent.string() + " cannot be written to");
+  }
+}
+
+}  // namespace
+
+void check_side_copies(const std::string& output,
+                       const std::vector<std::pair<std::string, std::string>>& copies) {
+  const auto refuse = [&](const std::string& from, const std::string& why) {
+    throw Error(ErrorKind::usage,
+                fmt::format("--output {}: {} is copied beside it, but {}; write to another folder, "
+                            "or a .glb, which embeds all, or remove what is there",
+                            output, from, why));
+  };
+  const std::set<fs::path> earlier = copies.empty() ? std::set<fs::path>{} : files_of(output);
+  for (const auto& [from, to] : copies) {
+    std::error_code ignored;
+    const fs::path parent = nearest_parent(to);
+    if (!fs::is_directory(parent, ignored)) refuse(from, parent.string() + " is not a folder");
+    try {
+      check_target(to, parent);
+    } catch (const Error& error) {
+      refuse(from, error.what());
+    }
+    if (fs::exists(to, ignored) && !earlier.contains(fs::path(to).lexically_normal()) &&
+        !have_same_content(from, to))
+      refuse(from, to + " is another file of that name");
+  }
+}
+
+}  // namespace dapple

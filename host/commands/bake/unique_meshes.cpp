@@ -1,0 +1,76 @@
+#include "commands/bake/unique_meshes.hpp"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <utility>
+#include <vector>
+
+namespace dapple {
+namespace {
+
+/// The nodes of the file that stand for placements, after instances became nodes.
+class PlacementNodes {
+ public:
+  explicit PlacementNodes(gltf::SourceFile& file) : file_(file) {}
+
+  /// Of the next placement of `mesh`, of the scene, by a node of the file; -1 if it has none.
+  int next(int node, std::uint32_t mesh) {
+    auto split = split_.find(node);
+    if (split == split_.end()) {
+      const auto in_file = static_cast<std::uint32_t>(node);
+      if (!file_.has_gpu_instances(in_file)) return node;
+      split = split_.emplace(node, file_.split_gpu_instances(in_file)).first;
+    }
+    return split->second.at(placements_[{node, mesh}]++);
+  }
+
+ private:
+  gltf::SourceFile& file_;
+  std::map<int, std::vector<int>> split_;
+  std::map<std::pair<int, std::uint32_t>, std::size_t> placements_;
+};
+
+/// Instances whose node is kLeftOut are in the scene, not in the file.
+constexpr int kLeftOut = -2;
+
+void remove_left_out(Scene& scene) {
+  const auto count = std::erase_if(
+      scene.instances, [](const Instance& instance) { return instance.node == kLeftOut; });
+  if (count > 0)
+    scene.warnings.push_back(
+        fmt::format("{}: instances whose places are not finite are left out ({} of them)",
+                    scene.source, count));
+}
+
+}  // namespace
+
+void make_meshes_unique(gltf::SourceFile& file, Scene& scene) {
+  std::map<std::uint32_t, std::uint32_t> owner;  // the first node that shows a mesh of the file
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> copies;  // by node and mesh
+  std::vector<bool> shown(scene.meshes.size());
+  PlacementNodes nodes(file);
+  for (Instance& instance : scene.instances) {
+    const std::uint32_t mesh = instance.mesh;
+    if (scene.meshes[mesh].sources.empty() || instance.node < 0) continue;
+    const std::uint32_t in_file = scene.meshes[mesh].sources[0].mesh;
+    const int placed = nodes.next(instance.node, mesh);
+    instance.node = placed < 0 ? kLeftOut : placed;
+    if (placed < 0) continue;
+    const auto node = static_cast<std::uint32_t>(placed);
+    const bool is_first = owner.try_emplace(in_file, node).first->second == node;
+    if (is_first && !shown[mesh]) {
+      shown[mesh] = true;
+      continue;
+    }
+    auto copy = copies.find({node, in_file});
+    if (copy == copies.end())
+      copy = copies.emplace(std::pair{node, in_file}, file.copy_mesh(node, in_file)).first;
+    instance.mesh = static_cast<std::uint32_t>(scene.meshes.size());
+    scene.meshes.push_back(Mesh(scene.meshes[mesh]));
+    for (VertexSource& source : scene.meshes.back().sources) source.mesh = copy->second;
+  }
+  remove_left_out(scene);
+}
+
+}  // namespace dapple

@@ -1,0 +1,242 @@
+// dapple render: reads a scene, renders each frame and writes its files.
+#include "dapple/render.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <set>
+#include <thread>
+
+#include "commands/arguments/option_text.hpp"
+#include "commands/command.hpp"
+#include "commands/interruption.hpp"
+#include "commands/progress.hpp"
+#include "commands/render/frames.hpp"
+#include "commands/render/render_arguments.hpp"
+#include "commands/render/shot.hpp"
+#include "commands/statistics_text.hpp"
+#include "commands/tell.hpp"
+#include "dapple/error.hpp"
+#include "film/exr/exr_output.hpp"
+#include "film/exr/exr_parts.hpp"
+#include "film/preview/tone_map.hpp"
+
+namespace dapple {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+RenderControl to_control(const RenderArguments& a, ProgressBar& progress) {
+  RenderControl control{progress.callback(), save_when_interrupted(), a.checkpoint,
+                        parse_seconds("--checkpoint-every", a.checkpoint_every), a.resume};
+  control.skip_film = is_late;
+  if (!a.checkpoint.empty()) control.progress = end_early(a.checkpoint, a.resume, control.progress);
+  return control;
+}
+
+void write_pictures(const RenderResult& result, const Frame& frame, const ExrFormat& format,
+                    const PngOptions& png) {
+  ExrFormat used = format;
+  // To end soon: compression takes longer than all else.
+  if (result.interrupted) used.compression = ExrCompression::none;
+  if (!is_part_path(frame.output))
+    write_exr(result.film, frame.output, used, result.interrupted ? Durable::no : Durable::yes);
+  if (!frame.deep.empty()) write_deep_exr(result.film, frame.deep);
+  if (!frame.png.empty()) write_png(result.film, frame.png, "", png);
+  if (!frame.visits_png.empty()) write_heat_map(result.film, frame.visits_png, "visits.nodes");
+}
+
+/// Prints one line for each note, at most twenty, and none that an earlier frame printed.
+class NotePrinter {
+ public:
+  void print(const std::vector<std::string>& notes) {
+    constexpr std::size_t kMax = 20;
+    std::size_t printed = 0, left = 0;
+    for (const std::string& note : notes) {
+      if (!told_.insert(note).second) continue;
+      if (printed++ < kMax) {
+        tell("note: {}\n", note);
+      } else {
+        ++left;
+      }
+    }
+    if (left > 0) tell("note: and {} more\n", left);
+  }
+
+ private:
+  std::set<std::string> told_;
+};
+
+/// The files that were written; of an interrupted part there is none.
+std::string files_text(const Frame& frame, bool interrupted) {
+  std::vector<std::string> files;
+  if (!interrupted || !is_part_path(frame.output)) files.push_back(frame.output);
+  for (const std::string& beside : {frame.png, frame.visits_png, frame.deep})
+    if (!beside.empty()) files.push_back(beside);
+  if (files.empty()) return "nothing";
+  const std::string last = files.back();
+  files.pop_back();
+  return files.empty() ? last : fmt::format("{} and {}", fmt::join(files, ", "), last);
+}
+
+void print_summary(const RenderStatistics& s, const Frame& frame, bool interrupted) {
+  const std::string files = files_text(frame, interrupted);
+  if (frame.title.empty()) {
+    fmt::print("{}wrote {}\n", statistics_text(s), files);
+    return;
+  }
+  fmt::print(
+      "{}, at {:.3f} s: load {:.2f}, build {:.2f}, refit {:.2f}, trace {:.2f}, total {:.2f} s; "
+      "wrote {}\n",
+      frame.title, *frame.seconds, s.seconds.load, s.seconds.build + s.seconds.prefilter,
+      s.seconds.refit, s.seconds.trace, s.seconds.total, files);
+  std::fflush(stdout);
+}
+
+/// Of a render that had no time for its picture.
+void report_saved(RenderStatistics& s, const Frame& frame, double total_seconds) {
+  s.seconds.total = total_seconds;
+  if (!frame.stats_json.empty()) write_statistics(s, frame.stats_json);
+  if (is_part_path(frame.output)) return;
+  s.notes.push_back(
+      fmt::format("not written, to end soon: {}; the checkpoint has all", files_text(frame, true)));
+}
+
+std::optional<double> first_seconds(const RenderArguments& a, const Frame& frame) {
+  if (!frame.seconds) return {};
+  return shutter_seconds(a, *frame.seconds, 0);
+}
+
+/// `first`: the scene when the shutter opens.
+RenderResult render_frame(const RenderArguments& a, const Frame& frame, Shot& shot, Scene first,
+                          Renderer& renderer, const RenderOptions& options,
+                          const RenderControl& control) {
+  if (a.shutter.empty() && !options.motion)
+    return renderer.render(std::move(first), options, control);
+  if (!frame.seconds)
+    throw Error(ErrorKind::usage, "--passes motion needs --frame or --frames: which time to show");
+  const auto scene_at = [&](int k) { return shot.frame(shutter_seconds(a, *frame.seconds, k)); };
+  const auto next_at = [&](int k) {
+    return shot.frame(shutter_seconds(a, *frame.seconds, k) + 1 / frames_per_second(a));
+  };
+  const int times = shutter_times(a);
+  RenderResult result = renderer.render_shutter(scene_at, times, options, control, next_at);
+  if (a.shutter.empty()) return result;
+  result.film.metadata.settings.emplace_back("shutter", a.shutter);
+  result.film.metadata.settings.emplace_back("motion_samples", fmt::format("{}", times));
+  return result;
+}
+
+/// Whether there are lights, of which none reaches a pixel.
+bool has_dark_lights(const Film& film) {
+  bool has_lights = false;
+  for (const Plane& plane : film.planes) {
+    if (!plane.channel.starts_with("light.")) continue;
+    has_lights = true;
+    if (std::any_of(plane.pixels.begin(), plane.pixels.end(), [](float v) { return v > 0; }))
+      return false;
+  }
+  return has_lights;
+}
+
+void run_render(const RenderArguments& a) {
+  RenderOptions options = to_options(a);
+  const ExrFormat format = to_format(a);
+  const std::vector<Frame> frames = list_frames(a);
+  ProgressBar progress(a.quiet, "rendering");
+  RenderControl control = to_control(a, progress);
+  check_files(frames, a);
+  if (!options.cache.empty()) prepare_bvh_cache(options.cache);
+  catch_interruptions();
+  use_exr_threads(static_cast<int>(std::thread::hardware_concurrency()));
+
+  auto start = Clock::now();
+  Renderer renderer;
+  renderer.prepare(options);
+  progress.announce("reading", a.dome.empty() ? a.scene : a.dome);
+  Shot shot(a, options);
+  progress.announce("reading", a.scene);
+  NotePrinter notes;
+  PngOptions png = parse_png_options(a.exposure, a.background);
+  for (const Frame& frame : frames) {
+    progress.begin(frame.title);
+    Scene scene = shot.frame(first_seconds(a, frame));
+    if (&frame == &frames.front()) {
+      check_files_spare(frames, a, scene.files);
+      progress.announce("building", "the BVH");
+    }
+    const double load_seconds = since(start);
+    control.part = is_part_path(frame.output) ? frame.output : "";
+    control.settings = shot.settings();
+    if (frame.seconds)
+      control.settings.emplace_back("frame_seconds", fmt::format("{}", *frame.seconds));
+    RenderResult result =
+        render_frame(a, frame, shot, std::move(scene), renderer, options, control);
+    slices_are_traced();
+    progress.clear();
+    RenderStatistics& statistics = result.statistics;
+    statistics.seconds.load = load_seconds;
+    // Interrupted before this frame began: the previous frame was the last.
+    if (result.interrupted && !frame.title.empty() && statistics.rays.camera == 0) break;
+
+    if (result.film.planes.empty()) {
+      report_saved(statistics, frame, since(start));
+      if (!a.quiet) notes.print(statistics.notes);
+      break;
+    }
+    const auto writing = Clock::now();
+    // The frames of a sequence have the exposure and the sky of the first one that is lit.
+    const bool is_lit = !has_dark_lights(result.film);
+    if (is_lit && !png.exposure && !frame.png.empty())
+      png.exposure = std::log2(automatic_exposure(result.film));
+    // A dome is the sky, whether the frame shows light or not.
+    if ((is_lit || !a.dome.empty()) && !options.ambient)
+      options.ambient = static_cast<float>(statistics.ambient);
+    options.footprint = statistics.footprint;  // a sequence has the footprint of its first frame
+    options.keep_footprint = true;
+    write_pictures(result, frame, format, png);
+    for (const std::string& name : half_layers_without_planes(result.film, format))
+      statistics.notes.push_back(fmt::format("--half {}: there is no such layer", name));
+    statistics.seconds.write = since(writing);
+    statistics.seconds.total = since(start);
+    if (!frame.stats_json.empty()) write_statistics(statistics, frame.stats_json);
+    if (!result.checkpoint_failure.empty())
+      throw Error(ErrorKind::failed, result.checkpoint_failure + "; the image is written");
+    if (!a.quiet) {
+      notes.print(statistics.notes);
+      print_summary(statistics, frame, result.interrupted);
+    }
+    if (result.interrupted || interruption_code() != 0) break;
+    start = Clock::now();
+  }
+}
+
+}  // namespace
+
+Run add_render_command(CLI::App& app) {
+  auto a = std::make_shared<RenderArguments>();
+  add_render_options(app, *a);
+  app.footer(
+      "Examples:\n  dapple render tree.glb --opacity leaf=0.85 --spp 64 -o tree.exr --png "
+      "tree.png\n"
+      "  dapple render tree.glb --spp 1024 -o tree.exr --checkpoint tree.ckpt  # Ctrl-C saves\n"
+      "  dapple render tree.glb --spp 1024 -o tree.exr --checkpoint tree.ckpt --resume tree.ckpt\n"
+      "  dapple render \"scene:tree?wind=1\" --frames 0-47 --fps 24 -o out.####.exr"
+      "\n\n"
+      "Layers: R,G,B,A; albedo; ao; bent; light.NAME; ao.back, light.NAME.back; N; Ng; P; Z; "
+      "motion; "
+      "crypto_object, crypto_material; samples; error; visits. Where rays miss, ao is 1.");
+  return [a] { run_render(*a); };
+}
+
+}  // namespace dapple

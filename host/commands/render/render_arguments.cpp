@@ -1,0 +1,380 @@
+// The options of `dapple render`. In: the command line. Out: RenderOptions.
+#include "commands/render/render_arguments.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "commands/arguments/option_text.hpp"
+#include "commands/arguments/output_name.hpp"
+#include "commands/arguments/shared_options.hpp"
+#include "dapple/error.hpp"
+
+namespace dapple {
+namespace {
+
+void add_sampling_options(CLI::App& app, RenderArguments& a) {
+  RenderOptions& o = a.options;
+  app.add_option("--spp", a.spp,
+                 "Camera rays per pixel. With a target this is the minimum, and each pixel gets at "
+                 "least 8 samples: camera rays times --camera-splitting")
+      ->default_str(fmt::format("{}; 1 with --target-rmse", o.spp));
+  app.add_option("--target-error", o.target_error,
+                 "Sample each pixel until its estimated standard error is below this; 0: no "
+                 "target. A light's error is divided by the largest irradiance that it gives "
+                 "anywhere without occlusion. Not with --target-rmse")
+      ->capture_default_str();
+  app.add_option("--target-rmse", o.target_rmse,
+                 "Sample until the estimated RMSE over all pixels is below this in each pass; 0: "
+                 "no target. Faster than --target-error, but the error varies more from pixel to "
+                 "pixel. Not with --target-error")
+      ->capture_default_str();
+  app.add_option("--max-spp", o.max_spp,
+                 "With a target: the largest number of camera rays per pixel")
+      ->capture_default_str();
+  app.add_option(
+         "--camera-splitting", o.camera_splitting,
+         "Number of surfaces that each camera ray shades: 1, 2 or 4; 0: dapple chooses from "
+         "the opacities of the scene. Larger values suit thin leaves and hair")
+      ->capture_default_str();
+  app.add_option(
+         "--ao-rays", o.ao_rays,
+         "AO rays per camera ray. The surfaces that the camera ray shades share them; each gets at "
+         "least one")
+      ->capture_default_str();
+  app.add_option("--light-rays", o.light_rays, "Rays per light and shaded surface")
+      ->capture_default_str();
+  add_prefiltering_options(app, a.estimator, o.footprint, a.report_bias)
+      ->each([&a](const std::string&) { a.footprint_given = true; });
+  app.add_option("--roulette", o.roulette,
+                 "With --estimator exact: rays of less transmittance than this end at random, and "
+                 "the others count for them: the same mean, sooner, with a little more noise; 0: "
+                 "none ends")
+      ->capture_default_str();
+  app.add_option(
+         "--max-bias", o.max_bias,
+         "Choose the largest footprint, from --footprint down to 0, whose bias is below this in "
+         "each layer; 0: take --footprint. Without it, --footprint, --frame and a target: a "
+         "smaller footprint if a part of the rays shows that the bias is above 0.002")
+      ->type_name("FLOAT");
+}
+
+void add_layer_options(CLI::App& app, RenderArguments& a) {
+  RenderOptions& o = a.options;
+  app.add_option("--passes", a.passes,
+                 "With commas between: ao, light, albedo (colours), back (AO and light of the side "
+                 "that faces away from the camera), motion (image motion until the next frame, in "
+                 "pixels), visits (BVH nodes and triangles that rays tested)")
+      ->capture_default_str();
+  app.add_option("--back-every", o.back_every,
+                 "With --passes back: one in so many samples is traced on that side, too: 1, 2, 4, "
+                 "8, 16, 32 or 64. With 1 these layers have as little noise as those in front, and "
+                 "a render takes up to 1.7 times as long")
+      ->capture_default_str();
+  app.add_option(
+      "--ambient", o.ambient,
+      "Radiance of a uniform sky that lights the RGBA picture through AO. Default: 1 without "
+      "lights, 0 with a dome, otherwise a tenth of the radiance that the lights give white "
+      "surfaces without occlusion (90th percentile of the pixels)");
+  app.add_option("--normals", a.normals,
+                 "shading: the normals of the meshes; geometric: flat facets")
+      ->capture_default_str();
+  app.add_option("--cryptomatte", a.cryptomatte,
+                 "Also make Cryptomattes: object, material, or both with a comma between");
+  add_ao_range_options(app, o.ao_distance, o.ao_falloff);
+  app.add_option("--seed", o.seed, "Seed of the random numbers: another seed gives other noise")
+      ->capture_default_str();
+}
+
+void add_picture_options(CLI::App& app, RenderArguments& a) {
+  RenderOptions& o = a.options;
+  app.add_option("--width", o.width, "Image width, pixels")->capture_default_str();
+  app.add_option("--height", o.height, "Image height, pixels")->capture_default_str();
+  app.add_option(
+      "--crop", a.crop,
+      "Render only this part: X0,Y0,X1,Y1, pixels from the top left, both ends included");
+  add_sampling_options(app, a);
+  add_layer_options(app, a);
+}
+
+void add_scene_options(CLI::App& app, RenderArguments& a) {
+  RenderOptions& o = a.options;
+  CLI::Option& camera =
+      *app.add_option("--camera", o.camera,
+                      "Camera by name; default: the scene's first, or one that shows all of it");
+  CLI::Option& look_from =
+      *app.add_option("--look-from", a.look_from, "Camera position X,Y,Z, metres (with --look-at)");
+  look_from.excludes(&camera);
+  app.add_option("--look-at", a.look_at, "Point that this camera looks at: X,Y,Z");
+  app.add_option("--up", a.up,
+                 "Up direction of this camera: X,Y,Z; default 0,1,0, or 0,0,-1 for one that looks "
+                 "straight up or down")
+      ->needs(&look_from);
+  app.add_option("--fov", a.fov,
+                 "Vertical field of view, degrees; default: the camera's own, or 40");
+  app.add_option("--aperture", o.aperture,
+                 "Depth of field: radius of the camera's lens, metres; 0: everything is sharp; "
+                 "default: the camera's own");
+  app.add_option(
+      "--focus-distance", o.focus_distance,
+      "Distance along the view direction that is sharp, metres; default: the camera's own, "
+      "--look-at, or the middle of the scene. Needs --aperture or a camera with a lens");
+  app.add_option("--lights", a.lights, "JSON file of lights, in place of the scene's own");
+  app.add_option(
+      "--dome", a.dome,
+      "Latitude-longitude image, OpenEXR or Radiance HDR, that lights the scene from all "
+      "around, in addition to the other lights");
+  add_rotation_option(app, "--dome-rotation", a.dome_rotation);
+  add_light_radius_option(app, a.scene_options.light_radius);
+  app.add_option("--line-radius", a.scene_options.line_radius,
+                 "Turn a glTF file's lines into strands of this radius, metres; 0: ignore them")
+      ->capture_default_str();
+  add_outside_option(app, a.scene_options.allow_outside);
+  add_opacity_option(app, a.opacity);
+  app.add_flag("--ground", o.ground, "Put an opaque plane under the scene");
+}
+
+void add_checkpoint_options(CLI::App& app, RenderArguments& a) {
+  CLI::Option& checkpoint = *app.add_option("--checkpoint", a.checkpoint,
+                                            "Write the state of the render to this file, for "
+                                            "--resume: periodically, on interruption and at the "
+                                            "end");
+  app.add_option("--checkpoint-every", a.checkpoint_every,
+                 "Time between two saves: 30 or 30s (seconds), 5m, 1h")
+      ->capture_default_str()
+      ->needs(&checkpoint);
+  app.add_option(
+      "--resume", a.resume,
+      "Continue from this checkpoint, with the same scene and options; you may raise --spp and "
+      "--max-spp, and lower the targets");
+  app.add_option("--shard", a.shard,
+                 "Trace only a part of the samples, for dapple merge: I/N, the I-th of N parts, as "
+                 "in 2/8; --spp is that of the whole image");
+}
+
+void add_motion_options(CLI::App& app, RenderArguments& a) {
+  CLI::Option& frame =
+      *app.add_option("--frame", a.frame,
+                      "Time to render, in seconds (not a frame number); default: the rest pose");
+  app.add_option("--frames", a.frames,
+                 "Render a sequence: A-B or A-B:STEP, frame n at n / fps seconds; write # "
+                 "characters in output names for the frame number")
+      ->excludes(&frame);
+  app.add_option("--fps", a.fps, "Frames per second, for --frames, --shutter and motion vectors")
+      ->default_str("24");
+  CLI::Option& shutter = *app.add_option(
+      "--shutter", a.shutter,
+      "Motion blur: OPEN,CLOSE, when the shutter opens and closes, in frames relative to the "
+      "frame's time, as in --shutter=-0.25,0.25. Needs --frame or --frames");
+  app.add_option("--motion-samples", a.motion_samples,
+                 "Number of times at which the shutter is sampled; --spp is divided among them. "
+                 "Default: 8, at most --spp")
+      ->needs(&shutter);
+  app.add_option("--animation", a.scene_options.animation,
+                 "The glTF animation that plays, by name; *: all at once; default: the first. "
+                 "Needs --frame or --frames");
+}
+
+void check_animation(const RenderArguments& a) {
+  if (!a.scene_options.animation.empty() && !a.frame && a.frames.empty())
+    throw Error(ErrorKind::usage, "--animation needs --frame or --frames: which time to show");
+}
+
+bool wants_motion(const RenderArguments& a) {
+  RenderOptions passes;
+  parse_passes(a.passes, passes);
+  return passes.motion;
+}
+
+void check_motion(const RenderArguments& a) {
+  const double fps = frames_per_second(a);
+  if (!(std::isfinite(fps) && fps > 0))
+    throw Error(ErrorKind::usage, "--fps must be a number above 0");
+  if (a.fps && a.frames.empty() && a.shutter.empty() && !wants_motion(a))
+    throw Error(ErrorKind::usage, "--fps needs --frames, --shutter or --passes motion");
+  if (a.shutter.empty()) return check_animation(a);
+  if (!a.frame && a.frames.empty())
+    throw Error(ErrorKind::usage, "--shutter needs --frame or --frames: when it opens");
+  const auto [open, close] = parse_shutter(a.shutter);
+  if (!(close > open))
+    throw Error(ErrorKind::usage,
+                fmt::format("--shutter {}: it must close after it opens", a.shutter));
+  if (a.motion_samples && (*a.motion_samples < 1 || *a.motion_samples > 1024))
+    throw Error(ErrorKind::usage, fmt::format("--motion-samples is {}; it must be from 1 to 1024",
+                                              *a.motion_samples));
+  check_animation(a);
+}
+
+/// A part is for dapple merge, which makes the image.
+void check_part(const RenderArguments& a, const RenderOptions& options) {
+  const auto refuse = [](const std::string& why) { throw Error(ErrorKind::usage, why); };
+  if (!is_part_path(a.output)) {
+    if (options.shard.count > 1)
+      refuse("--shard " + a.shard + " makes a part of an image, for dapple merge: -o FILE.dapple");
+    return;
+  }
+  if (is_adaptive(options)) {
+    refuse(fmt::format("-o {}: a part has a fixed number of samples: give --spp in place of {}",
+                       a.output, options.target_rmse > 0 ? "--target-rmse" : "--target-error"));
+  }
+  if (!a.half.empty() || a.multipart || a.compression != RenderArguments().compression)
+    refuse("-o " + a.output +
+           ": --half, --multipart and --compression are for the image: give them to dapple merge");
+  const bool is_part_of_frames = options.shard.count > 1 || (options.crop && a.dome.empty());
+  if (is_part_of_frames && !a.frames.empty() && options.light && !options.ambient)
+    refuse(fmt::format(
+        "{} with --frames needs --ambient: without it the sky of all frames is chosen from the {} "
+        "of the first, and {} would choose differently",
+        options.shard.count > 1 ? "--shard" : "-o FILE.dapple and --crop",
+        options.shard.count > 1 ? "samples" : "pixels",
+        options.shard.count > 1 ? "shards" : "crops"));
+}
+
+}  // namespace
+
+void check_png(const RenderArguments& a) {
+  parse_png_options(a.exposure, a.background);
+  check_png_name(a.png);
+  if (!a.png.empty()) return;
+  const RenderArguments defaults;
+  for (const char* flag : {a.exposure != defaults.exposure ? "--exposure" : "",
+                           a.background != defaults.background ? "--background" : ""})
+    if (*flag)
+      throw Error(ErrorKind::usage, fmt::format("{} needs --png: it changes no EXR", flag));
+}
+
+bool is_part_path(const std::string& path) { return path.ends_with(".dapple"); }
+
+void add_file_options(CLI::App& app, RenderArguments& a) {
+  app.add_option("--png", a.png,
+                 "Also write an 8-bit preview NAME.png; with --passes visits, also a heat map, "
+                 "NAME_visits.png");
+  app.add_option(
+         "--exposure", a.exposure,
+         "Exposure of the PNG in stops: 1 is twice as bright; auto: dapple chooses it from the "
+         "brightness of the picture")
+      ->capture_default_str();
+  app.add_option("--background", a.background,
+                 "Background of the PNG: sky (above a grey plain), none (keeps alpha), or a linear "
+                 "colour R,G,B "
+                 "from 0 to 1")
+      ->capture_default_str();
+  app.add_option(
+      "--half", a.half,
+      "Layers to store as 16-bit floats: names separated by commas, or all. Z, P, motion, "
+      "samples and Cryptomattes stay 32-bit");
+  app.add_flag("--multipart", a.multipart, "Write a part for each layer");
+  app.add_option("--compression", a.compression,
+                 "Compression of the EXR: zip, zips, piz, none; dwaa (lossy, for colours only; "
+                 "with --multipart)")
+      ->capture_default_str();
+}
+
+void add_render_options(CLI::App& app, RenderArguments& a) {
+  app.add_option("SCENE", a.scene,
+                 "glTF file (.gltf, .glb), hair (.hair) or a procedural scene, "
+                 "\"scene:tree?leaves=50000\"")
+      ->required();
+  app.add_option("-o,--output", a.output,
+                 "OpenEXR file to write; FILE.dapple: a part for dapple merge")
+      ->required();
+  add_file_options(app, a);
+  app.add_option("--deep", a.deep,
+                 "Also write a deep OpenEXR file: the opacity (A) at depths (Z) of each pixel");
+  add_picture_options(app, a);
+  add_scene_options(app, a);
+  add_motion_options(app, a);
+  add_checkpoint_options(app, a);
+  app.add_option("--packets", a.packets,
+                 "How occlusion rays are traced: none (one by one), pixel (packets of rays from "
+                 "neighbouring pixels), point (packets of rays from one point), scalar (for GPUs: "
+                 "every ray, those of the camera too, in a work-item of its own), auto (the device "
+                 "decides)")
+      ->capture_default_str();
+  add_device_options(app, a.options.device, a.options.kernel_dir, a.options.cache);
+  add_report_options(app, a.stats_json, a.quiet);
+}
+
+double frames_per_second(const RenderArguments& a) { return a.fps.value_or(24); }
+
+int shutter_times(const RenderArguments& a) {
+  constexpr int kDefault = 8;
+  if (a.shutter.empty()) return 1;
+  return a.motion_samples.value_or(std::min(kDefault, a.spp.value_or(a.options.spp)));
+}
+
+double shutter_seconds(const RenderArguments& a, double seconds, int k) {
+  if (a.shutter.empty()) return seconds;
+  const auto [open, close] = parse_shutter(a.shutter);
+  return seconds + (open + (close - open) * (k + 0.5) / shutter_times(a)) / frames_per_second(a);
+}
+
+ExrFormat to_format(const RenderArguments& a) {
+  ExrFormat format;
+  format.half = parse_names("--half", a.half);
+  format.multipart = a.multipart;
+  format.compression = parse_compression(a.compression);
+  validate(format);
+  return format;
+}
+
+/// Options that would change nothing, as if they were misspelt.
+void check_effects(const RenderArguments& a, const RenderOptions& o) {
+  const RenderOptions defaults;
+  const auto need = [](bool given, const char* flag, bool has_effect, const char* what) {
+    if (given && !has_effect) throw Error(ErrorKind::usage, fmt::format("{} needs {}", flag, what));
+  };
+  need(o.back_every != defaults.back_every, "--back-every", o.back,
+       "the pass back: --passes ao,light,albedo,back");
+  need(is_adaptive(o), "--target-rmse and --target-error", o.ao || o.light, "the pass ao or light");
+  need(o.ao_rays != defaults.ao_rays, "--ao-rays", o.ao, "the pass ao");
+  need(o.light_rays != defaults.light_rays, "--light-rays", o.light, "the pass light");
+  need(o.ao_distance > 0, "--ao-distance", o.ao, "the pass ao");
+  need(o.max_spp != defaults.max_spp, "--max-spp", is_adaptive(o),
+       "--target-rmse or --target-error");
+  need(a.dome_rotation != 0, "--dome-rotation", !a.dome.empty(), "--dome");
+}
+
+RenderOptions to_options(const RenderArguments& a) {
+  RenderOptions o = a.options;
+  if (a.spp) o.spp = *a.spp;
+  if (!a.spp && o.target_rmse > 0) o.spp = 1;
+  if (a.fov) o.fov_degrees = *a.fov;
+  if (a.fov && *a.fov == 0)  // in RenderOptions it means the camera's own
+    throw Error(ErrorKind::usage, "--fov is 0; it must be from 0.01 to 179");
+  // Frames that are rendered one by one must be alike.
+  if ((a.footprint_given || a.frame) && !o.max_bias) o.max_bias = 0.0f;
+  o.estimator = parse_estimator(a.estimator);
+  o.normals = parse_normals(a.normals);
+  o.report_bias = parse_share("--report-bias", a.report_bias);
+  o.packets = parse_packets(a.packets);
+  parse_passes(a.passes, o);
+  o.cryptomattes = parse_cryptomattes(a.cryptomatte);
+  o.deep = !a.deep.empty();
+  if (!a.crop.empty()) o.crop = parse_crop(a.crop);
+  if (!a.look_from.empty() || !a.look_at.empty()) {
+    if (a.look_from.empty() || a.look_at.empty()) {
+      throw Error(ErrorKind::usage, "--look-from and --look-at go together");
+    }
+    const V3f from = parse_vector("--look-from", a.look_from),
+              at = parse_vector("--look-at", a.look_at);
+    const bool is_vertical = from.x == at.x && from.z == at.z;
+    const V3f up = is_vertical ? V3f(0, 0, -1) : V3f(0, 1, 0);
+    o.look = LookAt{from, at, a.up.empty() ? up : parse_vector("--up", a.up)};
+  }
+  if (!a.shard.empty()) o.shard = parse_shard(a.shard);
+  if (!a.up.empty()) parse_vector("--up", a.up);
+  check_png(a);
+  check_effects(a, o);
+  dome_rotation("--dome-rotation", a.dome_rotation);
+  for (const std::string& text : a.opacity) o.opacity.push_back(parse_opacity(text));
+  validate(o);
+  check_exr_name("--output", a.output);
+  check_exr_name("--deep", a.deep);
+  check_part(a, o);
+  check_motion(a);
+  return o;
+}
+
+}  // namespace dapple

@@ -1,0 +1,106 @@
+// The scene of each frame: see shot.hpp.
+#include "commands/render/shot.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "camera/view.hpp"
+#include "commands/arguments/shared_options.hpp"
+#include "dapple/error.hpp"
+#include "scene/ground.hpp"
+#include "scene/lights/default_lights.hpp"
+
+namespace dapple {
+namespace {
+
+Light read_dome(const RenderArguments& a) {
+  Light dome = dome_light("dome", a.dome);
+  dome.rotation = dome_rotation("--dome-rotation", a.dome_rotation);
+  return dome;
+}
+
+/// Colours are read only where they are shown.
+SceneOptions scene_options_of(const RenderArguments& a, const RenderOptions& options) {
+  SceneOptions scene_options = a.scene_options;
+  scene_options.colors = options.albedo;
+  return scene_options;
+}
+
+}  // namespace
+
+Shot::Shot(const RenderArguments& a, RenderOptions& options) : arguments_(a), options_(options) {
+  if (!a.lights.empty()) lights_ = load_lights(a.lights);
+  if (!a.dome.empty()) dome_ = read_dome(a);
+  if (lights_ && lights_->empty() && !dome_)
+    options.light = options_.light = false;  // else default lights would be added
+  if (a.frames.empty() && a.shutter.empty() && !options.motion) return;
+  moving_.emplace(a.scene, scene_options_of(a, options));
+  options.ground = false;
+  options.opacity.clear();
+}
+
+std::vector<std::pair<std::string, std::string>> Shot::settings() const {
+  std::vector<std::pair<std::string, std::string>> settings;
+  if (!moving_) return settings;  // the renderer applies the opacities, and names them
+  for (const auto& [material, value] : options_.opacity)
+    settings.emplace_back("opacity_" + layer_name(material), fmt::format("{}", value));
+  return settings;
+}
+
+Scene Shot::frame(std::optional<double> seconds) {
+  SceneOptions scene_options = scene_options_of(arguments_, options_);
+  scene_options.time = seconds;
+  Scene scene = moving_ ? moving_->at(seconds) : load_scene(arguments_.scene, scene_options);
+  if (lights_) use_lights(scene, *lights_);
+  if (dome_) scene.lights.push_back(*dome_);
+  if (!moving_) return scene;
+  // Before the ground is added, as in a still: its material is not the scene's.
+  for (const auto& [material, value] : options_.opacity) override_opacity(scene, material, value);
+  if (!defaults_) defaults_ = choose_defaults(scene);
+  add_defaults(scene);
+  return scene;
+}
+
+Shot::Defaults Shot::choose_defaults(const Scene& first) const {
+  Defaults chosen;
+  const Camera camera = choose_view(first, options_, chosen.notes).camera;
+  if (!options_.look && first.cameras.empty()) chosen.camera = camera;
+  if (!options_.look) chosen.camera_name = camera.name;
+  chosen.focus_distance = camera.focus_distance;
+  if (options_.light && first.lights.empty()) chosen.lights = daylight(camera);
+  if (options_.ground) chosen.ground_under = scene_bounds(first);
+  return chosen;
+}
+
+// A camera that is scaled to nothing at some moments is not in the scene then.
+void Shot::keep_camera(Scene& scene) const {
+  if (options_.look) return;
+  if (defaults_->camera) {
+    scene.cameras = {*defaults_->camera};
+    return;
+  }
+  const auto kept =
+      std::find_if(scene.cameras.begin(), scene.cameras.end(),
+                   [&](const Camera& camera) { return camera.name == defaults_->camera_name; });
+  if (kept == scene.cameras.end())
+    throw Error(ErrorKind::input,
+                fmt::format("{}: camera {} is scaled to nothing at some moments; --look-from and "
+                            "--look-at choose another",
+                            arguments_.scene, defaults_->camera_name));
+  std::iter_swap(scene.cameras.begin(), kept);
+  Camera& camera = scene.cameras.front();
+  if (camera.focus_distance == 0) camera.focus_distance = defaults_->focus_distance;
+}
+
+void Shot::add_defaults(Scene& scene) const {
+  keep_camera(scene);
+  scene.lights.insert(scene.lights.end(), defaults_->lights.begin(), defaults_->lights.end());
+  if (defaults_->ground_under) add_ground(scene, *defaults_->ground_under);
+  scene.warnings.insert(scene.warnings.end(), defaults_->notes.begin(), defaults_->notes.end());
+  if (!defaults_->lights.empty())
+    scene.warnings.push_back(default_light_note(defaults_->ground_under.has_value()));
+}
+
+}  // namespace dapple

@@ -1,0 +1,96 @@
+#include "film/preview/tone_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "scene/images/color.hpp"
+
+namespace dapple {
+namespace {
+
+/// What a pixel shows where it is covered, and how much of it is.
+struct Seen {
+  float luminance, peak, weight;  ///< peak: of the brightest channel
+};
+
+std::vector<Seen> seen_luminances(const Film& film) {
+  const Plane *r = film.find("R"), *g = film.find("G"), *b = film.find("B"), *a = film.find("A");
+  std::vector<Seen> seen;
+  if (r == nullptr || g == nullptr || b == nullptr) return seen;
+  for (std::size_t p = 0; p < r->pixels.size(); ++p) {
+    const float alpha = a == nullptr ? 1.0f : std::min(a->pixels[p], 1.0f);
+    if (!(alpha > 0)) continue;
+    const auto value = static_cast<float>(luminance(V3f(r->pixels[p], g->pixels[p], b->pixels[p])) /
+                                          double{alpha});
+    const float peak = std::max({r->pixels[p], g->pixels[p], b->pixels[p]}) / alpha;
+    if (std::isfinite(value) && std::isfinite(peak))
+      seen.push_back({std::max(value, 0.0f), std::max(peak, 0.0f), alpha});
+  }
+  return seen;
+}
+
+/// What a hundredth of what is seen exceeds in one channel.
+double bright_peak(std::vector<Seen> seen, double weight) {
+  std::sort(seen.begin(), seen.end(), [](const Seen& a, const Seen& b) { return a.peak > b.peak; });
+  double brighter = 0;
+  for (const Seen& pixel : seen) {
+    brighter += double{pixel.weight};
+    if (brighter > 0.01 * weight) return double{pixel.peak};
+  }
+  return 0;
+}
+
+/// Mean luminance of the albedo of what is seen, [0,1]; that of a middle grey without the layer.
+double mean_albedo(const Film& film) {
+  constexpr double kMiddleGrey = 0.5;
+  const Plane *r = film.find("albedo.R"), *g = film.find("albedo.G"), *b = film.find("albedo.B");
+  const Plane* a = film.find("A");
+  if (r == nullptr || g == nullptr || b == nullptr || a == nullptr) return kMiddleGrey;
+  double sum = 0, weight = 0;
+  for (std::size_t p = 0; p < r->pixels.size(); ++p) {
+    const double alpha = double{a->pixels[p]};
+    const double value = luminance(V3f(r->pixels[p], g->pixels[p], b->pixels[p]));
+    if (!(alpha > 0) || !std::isfinite(value)) continue;
+    sum += alpha * value;
+    weight += alpha;
+  }
+  return weight > 0 ? std::clamp(sum / weight, 0.01, 1.0) : kMiddleGrey;
+}
+
+}  // namespace
+
+float automatic_exposure(const Film& film) {
+  constexpr double kMiddle = 0.35, kMiddleGrey = 0.5;
+  const std::vector<Seen> seen = seen_luminances(film);
+  double sum = 0, weight = 0;
+  for (const Seen& pixel : seen) {
+    sum += double{pixel.luminance} * double{pixel.weight};
+    weight += double{pixel.weight};
+  }
+  if (!(sum > 0)) return 1;
+  const double mean = sum / weight;
+  const double shown = kMiddle * std::sqrt(mean_albedo(film) / kMiddleGrey);
+  const double scale = std::min(shown / mean, 1.0 / std::max(bright_peak(seen, weight), mean));
+  return std::isfinite(static_cast<float>(scale)) ? static_cast<float>(scale) : 1;
+}
+
+V3f tone_mapped(V3f color) {
+  constexpr float kStart = 0.76f, kDesaturation = 0.15f;
+  for (int channel = 0; channel < 3; ++channel)
+    color[channel] = color[channel] > 0 ? std::min(color[channel], 1e30f) : 0.0f;  // NaN: 0
+  const float peak = std::max({color.x, color.y, color.z});
+  if (peak <= kStart) return color;
+  constexpr float kRoom = 1 - kStart;
+  const float to = 1 - kRoom * kRoom / (peak + kRoom - kStart);
+  const float kept = 1 / (kDesaturation * (peak - to) + 1);
+  return color * (to / peak * kept) + V3f(to) * (1 - kept);
+}
+
+V3f backdrop_color(float elevation) {
+  const V3f horizon(0.72f, 0.80f, 0.87f), zenith(0.12f, 0.30f, 0.68f), ground(0.33f, 0.33f, 0.32f);
+  const float away = 1 - std::exp(-4 * std::fabs(elevation));
+  return horizon + ((elevation > 0 ? zenith : ground) - horizon) * away;
+}
+
+}  // namespace dapple

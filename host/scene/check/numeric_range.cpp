@@ -1,0 +1,67 @@
+// Compares bounds, lights and cameras with the range: see numeric_range.hpp.
+#include "scene/check/numeric_range.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "dapple/error.hpp"
+#include "scene/check/scene_check.hpp"
+
+namespace dapple {
+namespace {
+
+[[noreturn]] void refuse(const Scene& scene, const std::string& what, double value) {
+  throw Error(ErrorKind::input,
+              fmt::format("{}: {} reaches {:g} m from the origin; dapple renders up to {:g} m: "
+                          "scale the scene down or move it to the origin",
+                          source_name(scene), what, value, kLargestCoordinate));
+}
+
+double reach(const V3f& point) {
+  return std::max(
+      {std::abs(double{point.x}), std::abs(double{point.y}), std::abs(double{point.z})});
+}
+
+/// The comparison is negated, so that a NaN is out of range too.
+void check_point(const Scene& scene, const std::string& what, const V3f& point) {
+  if (!(reach(point) <= kLargestCoordinate)) refuse(scene, what, reach(point));
+}
+
+/// Steps of coordinates that are coarse, as a part of the scene's size: 1 mm of 100 m.
+constexpr double kCoarseStep = 1e-5;
+
+void warn_of_coarse_steps(const Box3f& bounds, Scene& scene) {
+  const double far = std::max(reach(bounds.min), reach(bounds.max));
+  const double step = far * std::numeric_limits<float>::epsilon();
+  if (!(step > kCoarseStep * (bounds.max - bounds.min).length())) return;
+  scene.warnings.push_back(
+      fmt::format("the scene lies {:.3g} m from the origin, where coordinates have steps of {:.2g} "
+                  "m: move it to the origin, or smaller details and distances are lost",
+                  far, step));
+}
+
+}  // namespace
+
+void check_numeric_range(Scene& scene) {
+  const Box3f bounds = scene_bounds(scene);
+  if (!bounds.isEmpty()) {
+    check_point(scene, "its geometry", bounds.min);
+    check_point(scene, "its geometry", bounds.max);
+    warn_of_coarse_steps(bounds, scene);
+  }
+  for (const Light& light : scene.lights) {
+    if (light.kind == LightKind::rect || light.kind == LightKind::disk ||
+        light.kind == LightKind::sphere) {
+      check_point(scene, fmt::format("light \"{:.100}\"", light.name), light.position);
+    }
+  }
+  for (const Camera& camera : scene.cameras) {
+    const M44f& m = camera.to_world;
+    check_point(scene, fmt::format("camera \"{:.100}\"", camera.name), {m[3][0], m[3][1], m[3][2]});
+  }
+}
+
+}  // namespace dapple

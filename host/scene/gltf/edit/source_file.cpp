@@ -1,0 +1,174 @@
+#include "scene/gltf/edit/source_file.hpp"
+
+#include <cctype>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "scene/gltf/document/accessor.hpp"
+#include "scene/gltf/document/extension_names.hpp"
+#include "scene/gltf/edit/material_use.hpp"
+#include "scene/gltf/edit/source_content.hpp"
+#include "scene/gltf/instance.hpp"
+#include "scene/gltf/vertices.hpp"
+#include "scene/message.hpp"
+
+namespace dapple::gltf {
+namespace {
+
+std::string lower_case(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+using Readers = std::map<std::string, AccessorReader>;
+
+/// A node that stands for instance `i`, without a mesh.
+Json node_of_instance(const Readers& readers, std::size_t i) {
+  Json node = Json::object();
+  for (const auto& [name, reader] : readers) {
+    std::vector<float> values;
+    if (name == "ROTATION") {
+      const Imath::V4d unit = unit_rotation(reader, i);
+      for (int c = 0; c < 4; ++c) values.push_back(static_cast<float>(unit[c]));
+    } else {
+      for (std::uint64_t c = 0; c < reader.components(); ++c) values.push_back(reader.number(i, c));
+    }
+    const bool is_place = name == "ROTATION" || name == "TRANSLATION" || name == "SCALE";
+    (is_place ? node[lower_case(name)] : node["extras"][name]) = values;
+  }
+  return node;
+}
+
+bool has_finite_place(const Json& node) {
+  for (const char* key : {"translation", "rotation", "scale"})
+    if (node.contains(key))
+      for (const Json& value : node[key])
+        if (!std::isfinite(value.get<double>())) return false;
+  return true;
+}
+
+}  // namespace
+
+SourceFile::SourceFile(const std::string& path, bool allow_outside)
+    : content(new Content{
+          read_regular_file(path, path), {}, load_document(path, allow_outside), {}, 0}) {
+  content->container = split_container(content->bytes, path);
+  content->json = Json::parse(content->container.json);
+  content->meshes_of_file = static_cast<std::uint32_t>(content->document.model.meshes.size());
+}
+SourceFile::~SourceFile() { delete content; }
+SourceFile::SourceFile(SourceFile&& other) noexcept
+    : content(std::exchange(other.content, nullptr)) {}
+
+std::size_t SourceFile::vertex_count(std::uint32_t mesh, std::uint32_t primitive) const {
+  const int positions = attribute(content->primitive(mesh, primitive), "POSITION");
+  return content->document.model.accessors[static_cast<std::size_t>(positions)].count;
+}
+
+VertexKey SourceFile::vertex_key(std::uint32_t mesh, std::uint32_t primitive,
+                                 const std::string& name) const {
+  const auto& p = content->primitive(mesh, primitive);
+  return {mesh < content->meshes_of_file ? 0 : mesh,
+          static_cast<std::uint32_t>(attribute(p, "POSITION")),
+          static_cast<std::uint32_t>(attribute(p, name) + 1)};
+}
+
+std::uint32_t SourceFile::copy_mesh(std::uint32_t node, std::uint32_t mesh) {
+  auto& meshes = content->document.model.meshes;
+  meshes.push_back(tinygltf::Mesh(meshes[mesh]));
+  Json& json = content->json;
+  json["meshes"].push_back(Json(json["meshes"][mesh]));
+  json["nodes"][node]["mesh"] = meshes.size() - 1;
+  return static_cast<std::uint32_t>(meshes.size() - 1);
+}
+
+bool SourceFile::has_gpu_instances(std::uint32_t node) const {
+  return has_extension(content->json["nodes"][node], extension::kInstancing);
+}
+
+std::vector<int> SourceFile::split_gpu_instances(std::uint32_t node) {
+  Json& nodes = content->json["nodes"];
+  const Json attributes =
+      nodes[node]["extensions"][extension::kInstancing].value("attributes", Json::object());
+  // All have one length; without any there is one instance.
+  std::size_t count = 1;
+  Readers readers;
+  for (const auto& [name, accessor] : attributes.items()) {
+    const AccessorReader& reader =
+        readers.try_emplace(name, content->document, accessor.get<int>()).first->second;
+    count = reader.count();
+  }
+  std::vector<int> made(count, -1);
+  for (std::size_t i = 0; i < count; ++i) {
+    Json child = node_of_instance(readers, i);
+    if (!has_finite_place(child)) continue;  // JSON has no number for it
+    for (const char* key : {"mesh", "skin", "weights"})
+      if (nodes[node].contains(key)) child[key] = nodes[node][key];
+    made[i] = static_cast<int>(nodes.size());
+    nodes[node]["children"].push_back(nodes.size());
+    nodes.push_back(std::move(child));
+  }
+  for (const char* key : {"mesh", "skin", "weights"}) nodes[node].erase(key);
+  remove_extension(nodes[node], extension::kInstancing);
+  unlist_unused_extension(content->json, extension::kInstancing);
+  return made;
+}
+
+PrimitiveColors SourceFile::colors(std::uint32_t mesh, std::uint32_t primitive) const {
+  const int accessor = attribute(content->primitive(mesh, primitive), "COLOR_0");
+  if (accessor < 0) return {};
+  const AccessorReader reader(content->document, accessor);
+  PrimitiveColors colors{static_cast<std::uint32_t>(reader.components()), {}};
+  colors.values.resize(4 * reader.count(), 1.0f);
+  for (std::size_t i = 0; i < reader.count(); ++i)
+    for (std::uint32_t c = 0; c < colors.components; ++c)
+      colors.values[4 * i + c] = reader.normalized(i, c);
+  return colors;
+}
+
+std::vector<Imath::V2f> SourceFile::uvs(std::uint32_t mesh, std::uint32_t primitive,
+                                        std::uint32_t set) const {
+  const int accessor =
+      attribute(content->primitive(mesh, primitive), "TEXCOORD_" + std::to_string(set));
+  if (accessor < 0) return {};
+  const AccessorReader reader(content->document, accessor);
+  std::vector<Imath::V2f> uvs(reader.count());
+  for (std::size_t i = 0; i < uvs.size(); ++i) uvs[i] = reader.vec2(i);
+  return uvs;
+}
+
+std::string SourceFile::texture_with_uvs(std::uint32_t mesh, std::uint32_t primitive,
+                                         std::uint32_t set) const {
+  const Json& json = content->json;
+  const Json& user = json["meshes"][mesh]["primitives"][primitive];
+  std::vector<std::size_t> materials;
+  if (const int own = material_of(user); own != kNoMaterial)
+    materials.push_back(static_cast<std::size_t>(own));
+  for_each_variant(user, content->document.model.materials.size(), [&](const Json& mapping) {
+    materials.push_back(mapping["material"].get<std::size_t>());
+  });
+  for (const std::size_t i : materials) {
+    const Json& material = json["materials"][i];
+    const std::string texture = gltf::texture_with_uvs(material, set);
+    if (!texture.empty())
+      return fmt::format("{} of {}", texture, element("material", i, material.value("name", "")));
+  }
+  return {};
+}
+
+std::vector<std::string> SourceFile::attributes(std::uint32_t mesh, std::uint32_t primitive) const {
+  std::vector<std::string> names;
+  for (const auto& [name, accessor] : content->primitive(mesh, primitive).attributes)
+    names.push_back(name);
+  return names;
+}
+
+std::uint32_t SourceFile::uv_sets(std::uint32_t mesh, std::uint32_t primitive) const {
+  std::uint32_t sets = 0;
+  while (attribute(content->primitive(mesh, primitive), "TEXCOORD_" + std::to_string(sets)) >= 0)
+    ++sets;
+  return sets;
+}
+
+}  // namespace dapple::gltf

@@ -1,0 +1,146 @@
+// dapple bake of files with extensions that say again what a bake changes: compressed copies of
+// attributes, other materials of a primitive, images of other formats.
+#include <gtest/gtest.h>
+
+#include "dapple/scene.hpp"
+#include "support/programs/bake_command.hpp"
+
+namespace dapple {
+namespace {
+
+using namespace film_test;
+using namespace program_test;
+
+constexpr const char* kDraco = "KHR_draco_mesh_compression";
+constexpr const char* kVariants = "KHR_materials_variants";
+
+class BakeExtensions : public BakeCommand {
+ protected:
+  [[nodiscard]] json baked(const std::string& arguments) const {
+    const Outcome run = dapple("bake in.glb -o out.glb " + arguments);
+    EXPECT_EQ(run.code, 0) << run.err;
+    return run.code == 0 ? document("out.glb") : json();
+  }
+  /// The occlusion texture of a material of the first primitive, an index of the document.
+  static json occlusion_of(const json& doc, const json& material) {
+    return doc["materials"][material.get<std::size_t>()].value("occlusionTexture", json());
+  }
+};
+
+GltfBuilder compressed_triangle() {
+  GltfBuilder builder = rich_triangle();
+  builder.doc["meshes"][0]["primitives"][0]["extensions"][kDraco] = {
+      {"bufferView", builder.add_view(test::Bytes(100))}, {"attributes", {{"POSITION", 0}}}};
+  builder.doc["extensionsUsed"].push_back(kDraco);
+  return builder;
+}
+
+TEST_F(BakeExtensions, ACompressedCopyOfWhatChangesIsLeftOut) {
+  write("in.glb", compressed_triangle().glb());
+  for (const char* to : {"vertex", "texture --size 16"}) {
+    const json after = baked(std::string("--to ") + to);
+    EXPECT_FALSE(after["meshes"][0]["primitives"][0].contains("extensions")) << to;
+    EXPECT_EQ(after["extensionsUsed"], json{"ACME_wind"}) << to;
+  }
+  EXPECT_EQ(baked("--to instance")["meshes"], document("in.glb")["meshes"]);
+}
+
+TEST_F(BakeExtensions, CompressedMeshesThatAreNotBakedStayCompressed) {
+  GltfBuilder builder = compressed_triangle();
+  builder.doc["meshes"].push_back(builder.doc["meshes"][0]);  // no node shows it
+  write("in.glb", builder.glb());
+  const json after = baked("");
+  EXPECT_FALSE(after["meshes"][0]["primitives"][0].contains("extensions"));
+  EXPECT_EQ(after["meshes"][1], builder.doc["meshes"][1]);
+  EXPECT_EQ(after["extensionsUsed"], builder.doc["extensionsUsed"]);
+}
+
+GltfBuilder triangle_with_variants() {
+  GltfBuilder builder = rich_triangle();
+  builder.doc["materials"] = {{{"name", "summer"}}, {{"name", "autumn"}}};
+  json& primitive = builder.doc["meshes"][0]["primitives"][0];
+  primitive["material"] = 0;
+  primitive["extensions"][kVariants]["mappings"] = {{{"material", 1}, {"variants", {0}}},
+                                                    {{"material", 0}, {"variants", {1}}}};
+  builder.doc["extensions"][kVariants]["variants"] = {{{"name", "autumn"}}, {{"name", "summer"}}};
+  builder.doc["extensionsUsed"].push_back(kVariants);
+  return builder;
+}
+
+TEST_F(BakeExtensions, MaterialsOfAllVariantsGetTheTexture) {
+  write("in.glb", triangle_with_variants().glb());
+  const json after = baked("--to texture --size 16");
+  EXPECT_EQ(after["materials"].size(), 2u);
+  for (int material : {0, 1}) EXPECT_EQ(occlusion_of(after, material)["index"], 0);
+  EXPECT_EQ(after["meshes"][0]["primitives"][0]["extensions"],
+            document("in.glb")["meshes"][0]["primitives"][0]["extensions"]);
+}
+
+TEST_F(BakeExtensions, VariantsNameTheCopiesOfMaterialsThatOtherMeshesUse) {
+  GltfBuilder builder = triangle_with_variants();
+  builder.doc["meshes"].push_back(builder.doc["meshes"][0]);  // no node shows it
+  write("in.glb", builder.glb());
+  const json after = baked("--to texture --size 16");
+  ASSERT_EQ(after["materials"].size(), 4u);
+  for (int material : {0, 1}) EXPECT_TRUE(occlusion_of(after, material).is_null());
+  const json& primitive = after["meshes"][0]["primitives"][0];
+  const json& mappings = primitive["extensions"][kVariants]["mappings"];
+  EXPECT_EQ(mappings[1]["material"], primitive["material"]) << "summer is the default";
+  EXPECT_NE(mappings[0]["material"], primitive["material"]);
+  for (const json& mapping : mappings)
+    EXPECT_EQ(occlusion_of(after, mapping["material"])["index"], 0);
+  EXPECT_EQ(after["meshes"][1], builder.doc["meshes"][1]);
+}
+
+TEST_F(BakeExtensions, EmbeddedImagesHaveTheirOwnMediaType) {
+  GltfBuilder builder = rich_triangle();
+  builder.doc["images"] = {{{"uri", "leaf.webp"}}};
+  write("in.glb", builder.glb());
+  write_bytes(path("leaf.webp"), "RIFF1234WEBPVP8L");
+  EXPECT_EQ(baked("")["images"][0]["mimeType"], "image/webp");
+}
+
+// An occlusion texture with a transform is replaced by one without.
+TEST_F(BakeExtensions, ExtensionsThatNoElementHasAnyMoreAreNotListed) {
+  for (const bool another : {false, true}) {
+    GltfBuilder builder = triangle_with_variants();
+    const int image =
+        builder.add("images", {{"bufferView", builder.add_view(test::png::with_alpha(1, 1, {255}))},
+                               {"mimeType", "image/png"}});
+    builder.add("textures", {{"source", image}});
+    const json texture = {{"index", 0},
+                          {"extensions", {{"KHR_texture_transform", {{"offset", {0.5, 0}}}}}}};
+    for (json& material : builder.doc["materials"]) material["occlusionTexture"] = texture;
+    if (another) builder.doc["materials"][0]["emissiveTexture"] = texture;
+    builder.doc["extensionsUsed"].push_back("KHR_texture_transform");
+    write("in.glb", builder.glb());
+    const json used = baked("--to texture --size 16")["extensionsUsed"];
+    EXPECT_EQ(std::count(used.begin(), used.end(), "KHR_texture_transform"), another ? 1 : 0);
+  }
+}
+
+TEST_F(BakeExtensions, TextureCoordinatesThatATextureUsesAreNotReplaced) {
+  GltfBuilder builder = triangle_with_variants();
+  const int uvs = builder.add_accessor(std::vector<float>{0, 0, 1, 0, 0, 1}, test::kFloat, "VEC2");
+  json& attributes = builder.doc["meshes"][0]["primitives"][0]["attributes"];
+  attributes["TEXCOORD_0"] = attributes["TEXCOORD_1"] = uvs;
+  const int image =
+      builder.add("images", {{"bufferView", builder.add_view(test::png::with_alpha(1, 1, {255}))},
+                             {"mimeType", "image/png"}});
+  builder.add("textures", {{"source", image}});
+  builder.doc["materials"][1]["extensions"]["KHR_materials_sheen"]["sheenColorTexture"] = {
+      {"index", 0},
+      {"texCoord", 1},
+      {"extensions", {{"KHR_texture_transform", {{"texCoord", 0}}}}}};
+  write("in.glb", builder.glb());
+  for (const char* channel : {"TEXCOORD_0.y", "TEXCOORD_1.x"}) {
+    const Outcome run = dapple(std::string("bake in.glb -o out.glb --channel ") + channel);
+    expect_failure(run, 2, "sheenColorTexture of material 1 (\"autumn\")");
+    EXPECT_EQ(files_in_folder(), 1u);
+  }
+  EXPECT_TRUE(baked("--channel TEXCOORD_2.x")["meshes"][0]["primitives"][0]["attributes"].contains(
+      "TEXCOORD_2"));
+}
+
+}  // namespace
+}  // namespace dapple
