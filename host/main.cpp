@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -62,6 +63,29 @@ int refuse(const CLI::App& app, const CLI::ParseError& error) {
   return kUsage;
 }
 
+struct Command {
+  const char* name;
+  const char* description;
+  dapple::Run (*add)(CLI::App& command);
+};
+
+constexpr std::array kCommands{
+    Command{"render", "Render AO and light passes to an OpenEXR file", dapple::add_render_command},
+    Command{"merge", "Add up parts of an image that several runs made", dapple::add_merge_command},
+    Command{"plan", "Say what a render would take: memory, time, bytes of files",
+            dapple::add_plan_command},
+    Command{"points", "Compute AO, visible sky and irradiance at points",
+            dapple::add_points_command},
+    Command{"bake", "Bake AO into the vertices, a texture or the instances of a glTF file",
+            dapple::add_bake_command},
+    Command{"info", "Print what a scene holds and what its BVH costs", dapple::add_info_command},
+    Command{"scene", "Write a procedural scene as a GLB file", dapple::add_scene_command},
+    Command{"devices", "List the OpenCL devices", dapple::add_devices_command},
+    Command{"compare", "Print the differences of two OpenEXR files", dapple::add_compare_command},
+    Command{"compile", "Compile kernels for another process", dapple::add_compile_command},
+    Command{"document", "Write the manual page or completions", dapple::add_document_command},
+};
+
 int run(int argc, char** argv) {
   CLI::App app{
       "Ambient occlusion and soft shadows through foliage, hair and forests.\n\n"
@@ -74,34 +98,12 @@ int run(int argc, char** argv) {
       "Exit codes: 0 done, 1 failed, 2 usage, 3 bad input, 4 no usable device, 5 images differ,\n"
       "129 interrupted by SIGHUP, 130 by SIGINT, 143 by SIGTERM, 152 by SIGXCPU.\n"
       "dapple COMMAND --help lists the options of each.");
-  CLI::App& render = *app.add_subcommand("render", "Render AO and light passes to an OpenEXR file");
-  CLI::App& merge = *app.add_subcommand("merge", "Add up parts of an image that several runs made");
-  CLI::App& plan =
-      *app.add_subcommand("plan", "Say what a render would take: memory, time, bytes of files");
-  CLI::App& points =
-      *app.add_subcommand("points", "Compute AO, visible sky and irradiance at points");
-  CLI::App& bake = *app.add_subcommand(
-      "bake", "Bake AO into the vertices, a texture or the instances of a glTF file");
-  CLI::App& info = *app.add_subcommand("info", "Print what a scene holds and what its BVH costs");
-  CLI::App& scene = *app.add_subcommand("scene", "Write a procedural scene as a GLB file");
-  CLI::App& devices = *app.add_subcommand("devices", "List the OpenCL devices");
-  CLI::App& compare = *app.add_subcommand("compare", "Print the differences of two OpenEXR files");
-  CLI::App& compile = *app.add_subcommand("compile", "Compile kernels for another process");
-  CLI::App& document = *app.add_subcommand("document", "Write the manual page or completions");
-  const std::vector<std::pair<CLI::App*, dapple::Run>> commands{
-      {&render, dapple::add_render_command(render)},
-      {&merge, dapple::add_merge_command(merge)},
-      {&plan, dapple::add_plan_command(plan)},
-      {&bake, dapple::add_bake_command(bake)},
-      {&points, dapple::add_points_command(points)},
-      {&info, dapple::add_info_command(info)},
-      {&scene, dapple::add_scene_command(scene)},
-      {&devices, dapple::add_devices_command(devices)},
-      {&compare, dapple::add_compare_command(compare)},
-      {&compile, dapple::add_compile_command(compile)},
-      {&document, dapple::add_document_command(document)},
-  };
-  for (const auto& [command, work] : commands) dapple::refuse_empty_values(*command);
+  std::vector<std::pair<CLI::App*, dapple::Run>> commands;
+  for (const Command& command : kCommands) {
+    CLI::App& added = *app.add_subcommand(command.name, command.description);
+    commands.emplace_back(&added, command.add(added));
+    dapple::refuse_empty_values(added);
+  }
   dapple::refuse_missing_values(argc, argv);
   try {
     app.parse(argc, argv);

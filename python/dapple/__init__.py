@@ -18,10 +18,11 @@ from . import _drivers
 _drivers.use_driver_of_pip()
 
 from ._errors import DeviceError, Error, InputError, UsageError  # noqa: E402
+from ._load import load  # noqa: E402
 from ._native import devices, keep_kernels as _keep_kernels, version as _version  # noqa: E402
 from ._picture import Picture  # noqa: E402
 from ._results import Bake, BakedTexture, Bias, Columns, Irradiance, Mesh  # noqa: E402
-from ._scene import Scene, load  # noqa: E402
+from ._scene import Scene  # noqa: E402
 
 __version__ = _version()
 _drivers.at_exit(_keep_kernels)  # compiled kernels, for later processes

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import numbers
 import os
-from typing import Callable, Iterable, Optional, Sequence
+from typing import Callable, Iterable, Optional, Sequence, TypeVar
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from ._arrays import shape_text
 from ._errors import UsageError
 
 Progress = Optional[Callable[[float], object]]
+Kind = TypeVar("Kind")
 
 
 def number(name: str, value: float) -> float:
@@ -69,3 +70,11 @@ def progress_function(value: Progress) -> Progress:
     if value is not None and not callable(value):
         raise UsageError(f"progress is {value!r}; it must be a function of one number, or None")
     return value
+
+
+def list_of(name: str, values: Iterable[Kind], kind: type[Kind], plural: str) -> list[Kind]:
+    """A list of `values`, which must be of one kind. A single value of it is no list."""
+    found = list(values) if isinstance(values, Iterable) else [values]
+    if isinstance(values, kind) or not all(isinstance(value, kind) for value in found):
+        raise UsageError(f"{name} is {values!r}; it must be a list of {plural}")
+    return found

@@ -6,7 +6,7 @@ An array that has this layout is passed on as it is; others are copied.
 from __future__ import annotations
 
 import warnings
-from typing import Any, Sequence
+from typing import Any, Iterable, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -161,3 +161,18 @@ def materials(
             raise UsageError(f"opacity differs between triangles of the material {of!r}")
     pairs = [(label, float(value)) for label, value in zip(labels, distinct)]
     return pairs, np.ascontiguousarray(which, np.uint32)
+
+
+def points_with_normals(
+    points: npt.ArrayLike, normals: npt.ArrayLike
+) -> tuple[FloatArray, FloatArray]:
+    """Points and a unit normal for each; one normal may stand for all of them."""
+    at = vectors("points", points)
+    return at, unit_vectors("normals", normals, len(at))
+
+
+def texture_uvs(values: Iterable[npt.ArrayLike]) -> list[FloatArray]:
+    """For each mesh its texture coordinates, (n, 2) each."""
+    if not isinstance(values, Iterable):
+        raise UsageError(f"texture_uvs is {values!r}; it must be a list of arrays")
+    return [vectors(f"texture_uvs[{i}]", of, 2) for i, of in enumerate(values)]

@@ -195,6 +195,8 @@ def apply(
 
     arguments: names that the call has beside the options.
     """
+    if "footprint" in values and hasattr(options, "max_bias"):
+        values = {"max_bias": 0, **values}  # as on the command line: it is taken as it is
     fields = [name.removeprefix("set_") for name in dir(options) if not name.startswith("_")]
     known = [name for name in fields if name not in _OF_PERIODIC]
     changed: list[str] = []

@@ -149,3 +149,18 @@ class Bake:
     bias: dict[str, Bias] = field(default_factory=dict)
     #: As given, or what max_bias chose.
     footprint: float = 0.0
+
+
+def bake_of(
+    meshes: Iterable[Mapping[str, FloatArray]],
+    instance_ao: FloatArray,
+    lights: Mapping[str, FloatArray],
+    texture: tuple[Any, ...] | None,
+    notes: list[str],
+    bias: Mapping[str, tuple[float, float, float, float, float]],
+    footprint: float,
+) -> Bake:
+    """A Bake of what the engine returns."""
+    baked = None if texture is None else BakedTexture(dict(texture[0]), *texture[1:])
+    arrays = [dict(of) for of in meshes]
+    return Bake(arrays, instance_ao, dict(lights), notes, baked, biases(bias), footprint)

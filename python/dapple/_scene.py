@@ -13,7 +13,7 @@ from ._arguments import Progress
 from ._arrays import FloatArray, IndexArray
 from ._errors import UsageError
 from ._picture import Picture
-from ._results import Bake, BakedTexture, Columns, Irradiance, Mesh, biases
+from ._results import Bake, Columns, Irradiance, Mesh, bake_of, biases
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -258,7 +258,7 @@ class Scene:
         >>> bool(ao[0] < 0.9), bool(ao[1] > 0.98)
         (True, True)
         """
-        at, facing = _points(points, normals)
+        at, facing = _arrays.points_with_normals(points, normals)
         chosen = _options.apply("occlusion", _native.OcclusionOptions(), options)
         progress = _arguments.progress_function(progress)
         name = _arguments.text("device", device)
@@ -287,7 +287,7 @@ class Scene:
         >>> sun.irradiance.round(), sun.unoccluded.round()
         (array([[750., 750., 750.]], dtype=float32), array([[1000., 1000., 1000.]], dtype=float32))
         """
-        at, facing = _points(points, normals)
+        at, facing = _arrays.points_with_normals(points, normals)
         chosen = _options.apply("irradiance", _native.IrradianceOptions(), options)
         progress = _arguments.progress_function(progress)
         name = _arguments.text("device", device)
@@ -326,15 +326,13 @@ class Scene:
         >>> columns["gap_1"].shape
         (1,)
         """
-        at, facing = _points(points, normals)
+        at, facing = _arrays.points_with_normals(points, normals)
         towards = _arrays.vectors("suns", suns)
         towards = _arrays.unit_vectors("suns", towards, len(towards))
         across = _arrays.irradiances("sun_irradiance", sun_irradiance, len(towards))
         if isinstance(suns, tuple) and not suns and (np.any(np.asarray(sun_irradiance) != 1.0) or options.get("per_sun")):
             raise UsageError("sun_irradiance and per_sun need suns")
         arguments = ("suns", "sun_irradiance", "periodic", "progress")
-        if "footprint" in options:
-            options.setdefault("max_bias", 0)  # as on the command line: it is taken as it is
         chosen = _options.apply("measure", _native.PointOptions(), options, arguments)
         if periodic is not None:
             chosen.period_x, chosen.period_z = _arguments.several("periodic", periodic, 2)
@@ -359,8 +357,6 @@ class Scene:
         >>> picture["ao"].shape, picture["Z"].shape
         ((18, 32, 3), (18, 32))
         """
-        if "footprint" in options:
-            options.setdefault("max_bias", 0)  # as on the command line: it is taken as it is
         chosen = _options.apply("render", _native.RenderOptions(), options)
         progress = _arguments.progress_function(progress)
         return Picture(_native.render(self._native, chosen, progress))
@@ -394,51 +390,10 @@ class Scene:
         """
         arguments = ("occluders", "texture_uvs", "progress")
         chosen = _options.apply("bake", _native.BakeOptions(), options, arguments)
-        others = _natives("occluders", occluders)
-        if not isinstance(texture_uvs, Iterable):
-            raise UsageError(f"texture_uvs is {texture_uvs!r}; it must be a list of arrays")
-        uvs = [_arrays.vectors(f"texture_uvs[{i}]", of, 2) for i, of in enumerate(texture_uvs)]
+        scenes = _arguments.list_of("occluders", occluders, Scene, "scenes")
+        others = [scene._native for scene in scenes]
+        uvs = _arrays.texture_uvs(texture_uvs)
         if uvs and not chosen.texture:
             raise UsageError("bake(): texture_uvs needs texture=True")
         progress = _arguments.progress_function(progress)
-        meshes, instance_ao, lights, texture, notes, bias, footprint = _native.bake(
-            self._native, chosen, uvs, others, progress
-        )
-        baked = None if texture is None else BakedTexture(dict(texture[0]), *texture[1:])
-        arrays = [dict(of) for of in meshes]
-        return Bake(arrays, instance_ao, dict(lights), notes, baked, biases(bias), footprint)
-
-
-def _points(points: npt.ArrayLike, normals: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
-    at = _arrays.vectors("points", points)
-    return at, _arrays.unit_vectors("normals", normals, len(at))
-
-
-def _natives(name: str, scenes: Iterable[Scene]) -> list[_native.Scene]:
-    found = list(scenes) if isinstance(scenes, Iterable) else [scenes]
-    if isinstance(scenes, Scene) or not all(isinstance(scene, Scene) for scene in found):
-        raise UsageError(f"{name} is {scenes!r}; it must be a list of scenes")
-    return [scene._native for scene in found]
-
-
-def load(
-    path: str | PathLike[str],
-    *,
-    time: float | None = None,
-    animation: str = "",
-    allow_outside: bool = False,
-) -> Scene:
-    """Reads a scene: glTF 2.0 (.gltf, .glb), strands (.hair), or "scene:tree?leaves=50000".
-
-    time: seconds, of the pose; None: at rest. animation: by name, "*" for all, empty: the first.
-    allow_outside: buffers and images may be outside of the file's folder. Raises InputError.
-
-    >>> dapple.load("scene:tree?leaves=100").materials
-    ['leaf', 'bark']
-    >>> dapple.load("missing.glb")
-    Traceback (most recent call last):
-    dapple.InputError: missing.glb: no such file
-    """
-    seconds = None if time is None else _arguments.number("time", time)
-    name = _arguments.text("animation", animation)
-    return Scene(_native.load(_arguments.path("path", path), seconds, name, bool(allow_outside)))
+        return bake_of(*_native.bake(self._native, chosen, uvs, others, progress))

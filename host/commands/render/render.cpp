@@ -149,6 +149,20 @@ bool has_dark_lights(const Film& film) {
   return has_lights;
 }
 
+/// What the later frames of a sequence take over from this one.
+void keep_choices(const RenderResult& result, bool has_dome, bool writes_png,
+                  RenderOptions& options, PngOptions& png) {
+  // They have the exposure and the sky of the first frame that is lit.
+  const bool is_lit = !has_dark_lights(result.film);
+  if (is_lit && !png.exposure && writes_png)
+    png.exposure = std::log2(automatic_exposure(result.film));
+  // A dome is the sky, whether the frame shows light or not.
+  if ((is_lit || has_dome) && !options.ambient)
+    options.ambient = static_cast<float>(result.statistics.ambient);
+  options.footprint = result.statistics.footprint;
+  options.keep_footprint = true;
+}
+
 void run_render(const RenderArguments& a) {
   RenderOptions options = to_options(a);
   const ExrFormat format = to_format(a);
@@ -195,15 +209,7 @@ void run_render(const RenderArguments& a) {
       break;
     }
     const auto writing = Clock::now();
-    // The frames of a sequence have the exposure and the sky of the first one that is lit.
-    const bool is_lit = !has_dark_lights(result.film);
-    if (is_lit && !png.exposure && !frame.png.empty())
-      png.exposure = std::log2(automatic_exposure(result.film));
-    // A dome is the sky, whether the frame shows light or not.
-    if ((is_lit || !a.dome.empty()) && !options.ambient)
-      options.ambient = static_cast<float>(statistics.ambient);
-    options.footprint = statistics.footprint;  // a sequence has the footprint of its first frame
-    options.keep_footprint = true;
+    keep_choices(result, !a.dome.empty(), !frame.png.empty(), options, png);
     write_pictures(result, frame, format, png);
     for (const std::string& name : half_layers_without_planes(result.film, format))
       statistics.notes.push_back(fmt::format("--half {}: there is no such layer", name));
