@@ -9,6 +9,7 @@
 
 #include "dapple/scene.hpp"
 #include "scene/check/invertible.hpp"
+#include "scene/check/scene_check.hpp"
 
 namespace dapple {
 namespace {
@@ -57,6 +58,7 @@ bool is_placed(const Instance& instance) {
 }  // namespace
 
 Box3f scene_bounds(const Scene& scene, const M44f& transform) {
+  check_geometry(scene);
   std::vector<std::uint32_t> instance_counts(scene.meshes.size(), 0);
   for (const Instance& instance : scene.instances)
     if (is_placed(instance)) ++instance_counts[instance.mesh];

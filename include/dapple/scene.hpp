@@ -224,11 +224,12 @@ Light dome_light(const std::string& name, const std::string& path);
 void finalize_domes(Scene& scene);
 
 /// Writes meshes, instances, materials (no textures), cameras as one GLB file, whole or not at all.
-/// Throws Error failed.
+/// Throws Error failed, and input if the scene's parts do not fit together.
 void write_glb(const Scene& scene, const std::string& path);
 
 /// Bounds of all instances whose matrix can be inverted, after `transform` of world space, which is
-/// affine; an empty box for an empty scene.
+/// affine; an empty box for an empty scene. Throws Error input if the scene's parts do not fit
+/// together.
 Box3f scene_bounds(const Scene& scene, const M44f& transform = {});
 
 /// Gives material `name` the opacity `value` in place of texture, factor and mode.

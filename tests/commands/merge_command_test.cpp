@@ -128,6 +128,7 @@ TEST_F(MergeCommand, StatisticsTellWhatPartsKnow) {
   const std::string json = bytes("m.json");
   EXPECT_TRUE(contains(json, "\"parts\": 1")) << json;
   EXPECT_TRUE(contains(json, "\"missing\": \"")) << json;
+  EXPECT_TRUE(contains(json, "\"estimator\": \"prefiltered\"")) << json;
   for (const char* unknown : {"triangles\":", "nodes\":", "kernel_build", "bvh"})
     EXPECT_FALSE(contains(json, unknown)) << unknown;
 }

@@ -2,6 +2,7 @@
 // every function that takes a scene.
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <functional>
 #include <limits>
 
@@ -69,6 +70,21 @@ TEST(SceneCheck, WhatDoesNotFitTogetherIsNamed) {
        "material 0 \"material_1.000000\" has a colour"},
       {[&](Scene& s) { s.lights[0].radiance.y = nan; }, "light 0 \"sun\" has a radiance"},
       {[](Scene& s) { s.lights[0].radiance.x = -1; }, "light 0 \"sun\" has a radiance"},
+      {[](Scene& s) { s.lights[0].radiance.z = 2e30f; }, "light 0 \"sun\" has a radiance"},
+      {[](Scene& s) { s.lights[0].kind = static_cast<LightKind>(6); },
+       "light 0 \"sun\" has no kind 6"},
+      {[](Scene& s) { s.materials[0].alpha_mode = static_cast<AlphaMode>(3); },
+       "material 0 \"material_1.000000\" has no alpha mode 3"},
+      {[](Scene& s) {
+         s.textures.push_back({"leaf", 1, 1, {1}});
+         s.textures[0].wrap_t = static_cast<Wrap>(3);
+       },
+       "texture 0 \"leaf\" has the wrap modes 0 and 3"},
+      {[](Scene& s) {
+         s.meshes[0].name = "two\nlines";
+         s.meshes[0].normals.resize(3);
+       },
+       "mesh 0 \"two lines\" has 3 normals"},
       {[](Scene& s) { s.lights[0].direction = V3f(0); }, "light 0 \"sun\" has a direction"},
       {[](Scene& s) { s.lights[1].environment = std::make_shared<Environment>(); },
        "light 1 \"sky\" has a dome of 0 values for 0 x 0 pixels"},
@@ -92,6 +108,25 @@ TEST(SceneCheck, WhatDoesNotFitTogetherIsNamed) {
           message_of([&] { (void)bake(scene, {}); }), message_of([&] { (void)build_bvh(scene); })})
       EXPECT_TRUE(message.starts_with(expected)) << message << " in place of " << expected;
   }
+}
+
+TEST(SceneCheck, BoundsCamerasGroundsAndFilesAreOfScenesThatFitTogether) {
+  const std::string path = testing::TempDir() + "dapple_scene_check.glb";
+  const std::pair<std::function<void(Scene&)>, std::string> cases[] = {
+      {[](Scene& s) { s.meshes[0].indices[4] = 7; }, "mesh 0 has the index 7, but there are 4"},
+      {[](Scene& s) { s.instances[0].mesh = 7; }, "instance 0 has no mesh 7"},
+      {[](Scene& s) { s.meshes[0].materials[1] = 5; },
+       "mesh 0 has the material 5, but there are 1"},
+  };
+  for (const auto& [change, expected] : cases) {
+    Scene scene = lit_square();
+    change(scene);
+    EXPECT_EQ(message_of([&] { (void)scene_bounds(scene); }), expected);
+    EXPECT_EQ(message_of([&] { (void)frame_scene(scene, 1); }), expected);
+    EXPECT_EQ(message_of([&] { add_ground(scene); }), expected);
+    EXPECT_EQ(message_of([&] { write_glb(scene, path); }), expected);
+  }
+  EXPECT_FALSE(std::filesystem::exists(path));
 }
 
 TEST(SceneCheck, UpdatesAreCheckedAsBuildsAre) {

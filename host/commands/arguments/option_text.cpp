@@ -166,7 +166,11 @@ double parse_seconds(const std::string& flag, const std::string& text) {
   const std::string units = "smh";
   const std::size_t unit = text.empty() ? std::string::npos : units.find(text.back());
   const bool plain = unit == std::string::npos;
-  double seconds = parse_number<double>(flag, plain ? text : text.substr(0, text.size() - 1));
+  double seconds = 0;
+  try {
+    seconds = parse_number<double>(flag, plain ? text : text.substr(0, text.size() - 1));
+  } catch (const Error&) {  // refused below, with examples
+  }
   for (std::size_t i = 0; !plain && i < unit; ++i) seconds *= 60;
   if (seconds > 0 && seconds <= 1e9) return seconds;
   throw Error(ErrorKind::usage,

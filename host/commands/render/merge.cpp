@@ -65,8 +65,9 @@ void print(const Merge& merge, const MergeArguments& a) {
 nlohmann::ordered_json merge_json(const Merge& merge, std::size_t parts) {
   const RenderStatistics& statistics = merge.result.statistics;
   nlohmann::ordered_json json = statistics_json(statistics);
-  for (const char* of_scene : {"triangles", "segments", "nodes", "bvh", "estimator"})
-    json.erase(of_scene);
+  for (const char* of_scene : {"triangles", "segments", "nodes", "bvh"}) json.erase(of_scene);
+  for (const auto& [name, value] : merge.result.film.metadata.settings)
+    if (name == "estimator") json["estimator"] = value;
   json["seconds"] = {{"total", statistics.seconds.total}};
   json["bytes"] = {{"film", statistics.bytes.film}};
   json["parts"] = parts;

@@ -331,6 +331,8 @@ void check_effects(const RenderArguments& a, const RenderOptions& o) {
   need(o.ao_rays != defaults.ao_rays, "--ao-rays", o.ao, "the pass ao");
   need(o.light_rays != defaults.light_rays, "--light-rays", o.light, "the pass light");
   need(o.ao_distance > 0, "--ao-distance", o.ao, "the pass ao");
+  need(o.roulette != defaults.roulette, "--roulette", o.estimator == Estimator::exact,
+       "--estimator exact");
   need(o.max_spp != defaults.max_spp, "--max-spp", is_adaptive(o),
        "--target-rmse or --target-error");
   need(a.dome_rotation != 0, "--dome-rotation", !a.dome.empty(), "--dome");

@@ -10,6 +10,8 @@
 
 #include "dapple/error.hpp"
 #include "scene/check/finite.hpp"
+#include "scene/check/numeric_range.hpp"
+#include "scene/message.hpp"
 
 namespace dapple {
 namespace {
@@ -24,10 +26,10 @@ class Check {
   void that(bool holds, fmt::format_string<Values...> otherwise, Values&&... values) const {
     if (holds) return;
     const std::string name = name_.empty() ? "" : fmt::format(" \"{:.100}\"", name_);
-    throw Error(
-        ErrorKind::input,
-        fmt::format("{}{}{} {}{} {}", scene_.source, scene_.source.empty() ? "" : ": ", what_,
-                    number_, name, fmt::format(otherwise, std::forward<Values>(values)...)));
+    throw Error(ErrorKind::input,
+                one_line(fmt::format("{}{}{} {}{} {}", scene_.source,
+                                     scene_.source.empty() ? "" : ": ", what_, number_, name,
+                                     fmt::format(otherwise, std::forward<Values>(values)...))));
   }
   /// An optional array has no elements, or one for each of `count`.
   template <class T>
@@ -79,8 +81,17 @@ void check_mesh(const Scene& scene, std::size_t number) {
   check_indices(check, "object", mesh.objects, scene.objects.size());
 }
 
-/// Of radiances and colours.
-bool is_radiance(const V3f& v) { return is_finite(v) && std::min({v.x, v.y, v.z}) >= 0; }
+bool is_color(const V3f& v) { return is_finite(v) && std::min({v.x, v.y, v.z}) >= 0; }
+
+bool is_radiance(const V3f& v) {
+  return is_color(v) && std::max({v.x, v.y, v.z}) <= static_cast<float>(kLargestRadiance);
+}
+
+/// Whether an enumerator exists. `last`: the last one.
+template <class Enumeration>
+bool is_one_of(Enumeration value, Enumeration last) {
+  return static_cast<int>(value) <= static_cast<int>(last);
+}
 
 /// -1 is none.
 bool is_index(int index, std::size_t count) {
@@ -90,13 +101,15 @@ bool is_index(int index, std::size_t count) {
 void check_material(const Scene& scene, std::size_t number) {
   const Material& material = scene.materials[number];
   const Check check(scene, "material", number, material.name);
+  check.that(is_one_of(material.alpha_mode, AlphaMode::blend), "has no alpha mode {}",
+             static_cast<int>(material.alpha_mode));
   check.that(is_index(material.alpha_texture, scene.textures.size()), "has no texture {}",
              material.alpha_texture);
   check.that(is_index(material.color_texture, scene.color_textures.size()),
              "has no colour texture {}", material.color_texture);
   check.that(std::isfinite(material.alpha) && std::isfinite(material.alpha_cutoff),
              "has the alpha {} and the cutoff {}", material.alpha, material.alpha_cutoff);
-  check.that(is_radiance(material.color), "has a colour that is negative or not finite");
+  check.that(is_color(material.color), "has a colour that is negative or not finite");
 }
 
 template <class Image>
@@ -106,6 +119,9 @@ void check_image(const Scene& scene, const char* what, std::size_t number, const
   const std::size_t texels = std::size_t{image.width} * image.height;
   check.that(texels > 0 && values == channels * texels, "has {} values for {} x {} texels", values,
              image.width, image.height);
+  check.that(is_one_of(image.wrap_s, Wrap::mirror) && is_one_of(image.wrap_t, Wrap::mirror),
+             "has the wrap modes {} and {}, which there are not", static_cast<int>(image.wrap_s),
+             static_cast<int>(image.wrap_t));
 }
 
 void check_images(const Scene& scene) {
@@ -121,8 +137,10 @@ void check_images(const Scene& scene) {
 void check_light(const Scene& scene, std::size_t number) {
   const Light& light = scene.lights[number];
   const Check check(scene, "light", number, light.name);
-  check.that(is_radiance(light.radiance), "has a radiance that is negative or not finite");
+  check.that(is_radiance(light.radiance),
+             "has a radiance that is negative, not finite or above {:g}", kLargestRadiance);
   const LightKind kind = light.kind;
+  check.that(is_one_of(kind, LightKind::disk), "has no kind {}", static_cast<int>(kind));
   check.that(std::isfinite(light.rotation), "has the rotation {}", light.rotation);
   check.that(light.cos_outer >= -1 && light.cos_outer <= light.cos_inner && light.cos_inner <= 1,
              "has a cone of the cosines {} inside and {} outside", light.cos_inner,
@@ -133,7 +151,8 @@ void check_light(const Scene& scene, std::size_t number) {
         "has a dome of {} values for {} x {} pixels; they must be as many, and one at least",
         dome->radiance.size(), dome->width, dome->height);
     check.that(std::all_of(dome->radiance.begin(), dome->radiance.end(), is_radiance),
-               "has a dome with pixels that are negative or not finite");
+               "has a dome with pixels that are negative, not finite or above {:g}",
+               kLargestRadiance);
   }
   if (kind == LightKind::mesh || kind == LightKind::dome) return;
   check.that(is_finite(light.position), "has a position that is not finite");

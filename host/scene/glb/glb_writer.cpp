@@ -56,6 +56,7 @@ void write_glb_bytes(PendingFile& file, std::string json, std::span<const std::s
 }
 
 void write_glb(const Scene& scene, const std::string& path) {
+  check_geometry(scene);
   const GlbLayout layout = lay_out_glb(scene);
   std::vector<std::string_view> binary;
   for (const auto& section : layout.sections)
