@@ -50,6 +50,22 @@ void ao_ray_pass(DeviceContext& context, const Queues& queues, const AoParams& p
                 {queues.points, queues.active, queues.rays, params});
 }
 
+OcclusionParams occlusion_params(const DeviceBuffers& scene, std::size_t points,
+                                 std::size_t rays_per_point, float footprint) {
+  OcclusionParams params{};
+  params.scene = scene.params;
+  params.ray_count = static_cast<uint>(points * rays_per_point);
+  params.rays_per_point = static_cast<uint>(rays_per_point);
+  params.footprint = footprint;
+  return params;
+}
+
+void set_falloff(OcclusionParams& params, float distance, float power) {
+  if (!(distance > 0 && power > 0)) return;
+  params.inverse_distance = 1.0f / distance;
+  params.falloff = power;
+}
+
 void gather_pass(DeviceContext& context, const Queues& queues, const Buffer& slots,
                  const Queues& gathered, uint ray_count, uint rays_per_point, uint first) {
   context.launch(kGatherRays, "bias report", ray_count,

@@ -44,6 +44,15 @@ std::size_t sums_per_point(std::size_t rays_per_point);
 void sum_rays_pass(DeviceContext& context, const Queues& queues, const Buffer& sums,
                    std::size_t points, std::size_t rays_per_point);
 
+/// Of `rays_per_point` rays of each of `points`, without a falloff. `footprint`: a scale, 0 or
+/// more.
+OcclusionParams occlusion_params(const DeviceBuffers& scene, std::size_t points,
+                                 std::size_t rays_per_point, float footprint);
+
+/// Surfaces occlude less the farther they are, nothing at `distance` metres; none where it, or
+/// `power`, is 0.
+void set_falloff(OcclusionParams& params, float distance, float power);
+
 /// Writes the transmittance of each ray in `rays` to `occlusions`. CPUs trace point packets if
 /// `params.rays_per_point` is large enough, else pixel packets; other devices trace single rays. A
 /// device that was opened with given packets uses these.

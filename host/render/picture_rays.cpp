@@ -17,11 +17,8 @@ OcclusionParams PictureRays::make_ao(const Queues& queues, std::uint32_t hits) c
   ao.shaded = shaded_;
   ao.viewpoint = viewpoint_;
   ao_ray_pass(context_, queues, ao);
-  OcclusionParams params = occlusion_params(hits, ao_rays_);
-  if (options_.ao_distance > 0 && options_.ao_falloff > 0) {
-    params.inverse_distance = 1.0f / options_.ao_distance;
-    params.falloff = options_.ao_falloff;
-  }
+  OcclusionParams params = occlusion_of(hits, ao_rays_);
+  set_falloff(params, options_.ao_distance, options_.ao_falloff);
   return params;
 }
 
@@ -37,15 +34,12 @@ OcclusionParams PictureRays::make_light(const Queues& queues, std::uint32_t ligh
   params.shaded = shaded_;
   params.viewpoint = viewpoint_;
   light_ray_pass(context_, scene_, queues, params);
-  return occlusion_params(hits, light_rays_);
+  return occlusion_of(hits, light_rays_);
 }
 
-OcclusionParams PictureRays::occlusion_params(std::uint32_t points, int rays) const {
-  OcclusionParams params{};
-  params.scene = scene_.params;
-  params.rays_per_point = static_cast<uint>(rays);
-  params.ray_count = points * params.rays_per_point;
-  params.footprint = options_.footprint;
+OcclusionParams PictureRays::occlusion_of(std::uint32_t points, int rays) const {
+  OcclusionParams params =
+      occlusion_params(scene_, points, static_cast<std::size_t>(rays), options_.footprint);
   if (options_.estimator == Estimator::exact) params.roulette = options_.roulette;
   return params;
 }

@@ -38,7 +38,7 @@ class PictureRays {
   [[nodiscard]] const Viewpoint& viewpoint() const { return viewpoint_; }
 
  private:
-  [[nodiscard]] OcclusionParams occlusion_params(std::uint32_t points, int rays) const;
+  [[nodiscard]] OcclusionParams occlusion_of(std::uint32_t points, int rays) const;
 
   DeviceContext& context_;
   const DeviceBuffers& scene_;

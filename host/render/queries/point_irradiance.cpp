@@ -89,12 +89,8 @@ class LightTracer {
     params.seed = options_.seed;
     params.shaded = shaded_ ? 1u : 0u;
     light_ray_pass(context_, scene_, queues_, params);
-    OcclusionParams occlusion{};
-    occlusion.scene = scene_.params;
-    occlusion.rays_per_point = params.rays;
-    occlusion.ray_count = points * params.rays;
-    occlusion.footprint = options_.footprint;
-    occlusion_pass(context_, queues_, scene_, "light occlusion", options_.estimator, occlusion);
+    occlusion_pass(context_, queues_, scene_, "light occlusion", options_.estimator,
+                   occlusion_params(scene_, points, params.rays, options_.footprint));
   }
 
   /// Sums over the rays of a point, with occlusion and without.

@@ -36,15 +36,9 @@ AoParams ao_params(const OcclusionOptions& options, std::size_t points, bool sha
 
 OcclusionParams occlusion_params(const OcclusionOptions& options, const DeviceBuffers& scene,
                                  std::size_t points) {
-  OcclusionParams params{};
-  params.scene = scene.params;
-  params.rays_per_point = static_cast<uint>(options.rays);
-  params.ray_count = static_cast<uint>(points) * params.rays_per_point;
-  params.footprint = options.footprint;
-  if (options.distance > 0 && options.falloff > 0) {
-    params.inverse_distance = 1.0f / options.distance;
-    params.falloff = options.falloff;
-  }
+  OcclusionParams params =
+      occlusion_params(scene, points, static_cast<std::size_t>(options.rays), options.footprint);
+  set_falloff(params, options.distance, options.falloff);
   return params;
 }
 

@@ -14,16 +14,6 @@
 namespace dapple {
 namespace {
 
-OcclusionParams occlusion_params(const DeviceBuffers& scene, std::size_t points,
-                                 std::size_t rays_per_point, float footprint) {
-  OcclusionParams params{};
-  params.scene = scene.params;
-  params.ray_count = static_cast<uint>(points * rays_per_point);
-  params.rays_per_point = static_cast<uint>(rays_per_point);
-  params.footprint = footprint;
-  return params;
-}
-
 /// Throws Error usage unless every rays_per_point consecutive rays have one origin and one light.
 void check_points(std::span<const Ray> rays, std::size_t rays_per_point) {
   if (rays_per_point < 1 || rays.size() % rays_per_point != 0) {
