@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "dapple/scene.hpp"
+#include "scene/check/scene_check.hpp"
 #include "scene/glb/glb_bytes.hpp"
 #include "scene/glb/glb_layout.hpp"
 
