@@ -58,6 +58,7 @@ class PictureTracer {
     }
     place_sums();
     resolve_ = resolve_params(view, layout, camera_.splitting_bits);
+    resolve_.first_sample = state_.first_sample;
     if (options.back)
       backs_.emplace(context_, queues_, state_.slice_samples,
                      back_params(view, options, layout, resolve_));

@@ -41,7 +41,7 @@ __kernel void resolve_surface(__global const PixelWork* work, __global const Sur
     for (uint left = record.hits & range; left; left &= left - 1u)
       of_points += surface_sums(params, scale, points + r * DAPPLE_HIT_BITS + lowest_bit(left));
   }
-  const uint pixel = pixel_of(work, params, local_pixel);
+  const FilmPixel pixel = film_pixel(work, params, local_pixel);
   if (visits | tests) {
     add_to_plane(film, params, DAPPLE_PLANE_CAMERA_VISITS, pixel, visits);
     add_to_plane(film, params, DAPPLE_PLANE_CAMERA_TESTS, pixel, tests);
@@ -80,7 +80,7 @@ __kernel void resolve_ao(__global const PixelWork* work, __global const SampleHi
     }
     add_to_batch(&batches, s, value);
   }
-  const uint pixel = pixel_of(work, params, local_pixel);
+  const FilmPixel pixel = film_pixel(work, params, local_pixel);
   add_squares(squares, params, pixel, &batches);
   add_to_planes(film, params, params.backs ? 1u : DAPPLE_AO_PLANES, pixel, sums);
 }
@@ -112,7 +112,7 @@ __kernel void resolve_light(__global const PixelWork* work, __global const Sampl
     }
     add_to_batch(&batches, s, value);
   }
-  const uint pixel = pixel_of(work, params, local_pixel);
+  const FilmPixel pixel = film_pixel(work, params, local_pixel);
   add_squares(squares, params, pixel, &batches);
   add_to_planes(film, params, params.backs ? 1u : DAPPLE_LIGHT_PLANES, pixel, sums);
 }

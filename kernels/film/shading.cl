@@ -118,7 +118,7 @@ __kernel void shade_points(__global const BvhNode* nodes, __global const Triangl
     }
   }
   if (!any || !params.resolves) return;
-  const uint pixel = pixel_of(work, params.resolve, local_pixel);
+  const FilmPixel pixel = film_pixel(work, params.resolve, local_pixel);
   uint plane = 0u;
   if (shading.has_normals) {
     add_to_planes(film, params.resolve, DAPPLE_NORMAL_PLANES, pixel, sums);

@@ -78,5 +78,5 @@ void shade_points_scalar(__global const BvhNode* nodes, __global const TriangleB
   for (uint i = 0; i < DAPPLE_SHADING_ITEMS; ++i) sum += sums[(items + i) * DAPPLE_SHADED_PLANES + plane];
   if (sum)
     add_to_plane(film, params.resolve, of_color && !shading.has_normals ? plane - DAPPLE_NORMAL_PLANES : plane,
-                 pixel_of(work, params.resolve, pixel), sum);
+                 film_pixel(work, params.resolve, pixel), sum);
 }

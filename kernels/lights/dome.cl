@@ -62,7 +62,7 @@ __kernel void resolve_dome(__global const PixelWork* work, __global const Sample
     }
     add_to_batch(&batches, s, value);
   }
-  const uint pixel = pixel_of(work, params, local_pixel);
+  const FilmPixel pixel = film_pixel(work, params, local_pixel);
   add_squares(squares, params, pixel, &batches);
   add_to_planes(film, params, params.backs ? DAPPLE_DOME_CHANNELS : DAPPLE_DOME_PLANES, pixel, sums);
 }

@@ -97,6 +97,7 @@
   MEMBER(LightParams, shaded) MEMBER(LightParams, viewpoint)                                 \
   STRUCT(ResolveParams)                                                                      \
   MEMBER(ResolveParams, slice) MEMBER(ResolveParams, film_pixels)                            \
+  MEMBER(ResolveParams, first_sample)                                                        \
   MEMBER(ResolveParams, plane) MEMBER(ResolveParams, rays) MEMBER(ResolveParams, squares)    \
   MEMBER(ResolveParams, backs) MEMBER(ResolveParams, splitting_bits)                         \
   MEMBER(ResolveParams, scale)                                                               \

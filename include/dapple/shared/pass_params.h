@@ -132,6 +132,7 @@ typedef struct LightParams {
 typedef struct ResolveParams {
   SliceParams slice;
   uint film_pixels;    /* pixels of a plane */
+  uint first_sample;   /* the number of each pixel's first sample */
   uint plane;          /* first plane to add to */
   uint rays;           /* rays a sample */
   uint squares;        /* first of two planes of squares to add to */
