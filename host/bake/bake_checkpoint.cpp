@@ -139,7 +139,8 @@ void BakeCheckpoint::save(bool now) {
   if (!now && since_saved_.seconds() < control_.checkpoint_every) return;
   failure_.clear();
   try {
-    const std::string about = json(settings_).dump();
+    // Names may have bytes that are not UTF-8.
+    const std::string about = json(settings_).dump(-1, ' ', false, json::error_handler_t::replace);
     const std::vector<std::byte> packed = compress(as_section(values_));
     // Not synced to disk, as those of renders (experiment 805).
     write_sealed_file(control_.checkpoint, kKind,

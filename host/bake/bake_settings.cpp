@@ -43,6 +43,8 @@ void add_material(ChecksumStream& stream, const Material& material) {
 
 void add_light(ChecksumStream& stream, const Light& light) {
   stream.add_range(light.name);
+  stream.add_range(light.group);
+  stream.add_value(light.sequence);
   stream.add_value(light.kind);
   for (const V3f& v : {light.radiance, light.position, light.direction, light.edge_u, light.edge_v})
     add_vector(stream, v);

@@ -9,11 +9,13 @@
 namespace dapple {
 namespace {
 
-constexpr std::size_t kSurfaceChannels = 24;  // RGBA, albedo, ao, bent, N, Ng, P, Z, samples
-constexpr std::size_t kLightChannels = 4;     // light.NAME and error.light.NAME
-constexpr std::size_t kMatteChannels = 12;    // of crypto_object or crypto_material
-constexpr std::size_t kMatteSlotBytes = 80;   // MatteSums, two slots
-constexpr std::size_t kDeepBytes = 200;       // DeepSums and DeepAlpha, eight depths
+// RGBA, albedo, ao, error.ao, bent, N, Ng, P, Z, samples
+constexpr std::size_t kSurfaceChannels = 25;
+constexpr std::size_t kLightChannels = 4;    // light.NAME and error.light.NAME
+constexpr std::size_t kMatteChannels = 12;   // of crypto_object or crypto_material
+constexpr std::size_t kMatteSlotBytes = 80;  // MatteSums, two slots
+constexpr std::size_t kDeepBytes = 200;      // DeepSums and DeepAlpha, eight depths
+constexpr std::size_t kPlanBytes = 12;       // PixelWork, the number of samples
 
 }  // namespace
 
@@ -37,11 +39,15 @@ std::size_t film_bytes_per_pixel(std::size_t lights, const RenderOptions& option
     sums += 2;
     channels += 2;
   }
+  if (options.visits) channels += 2;
+  const std::size_t sides = options.back ? 2 : 1;
+  const std::size_t differences = options.report_bias > 0 ? sides * (1 + lights) : 0;  // BiasSums
   const std::size_t deep = options.deep ? kDeepBytes : 0;
   const Cryptomattes& mattes = options.cryptomattes;
   const std::size_t types = (mattes.objects ? 1u : 0u) + (mattes.materials ? 1u : 0u);
   return 2 * (sums * sizeof(std::int64_t) + channels * sizeof(float)) +
-         types * (2 * kMatteChannels * sizeof(float)) + (types ? kMatteSlotBytes : 0) + deep;
+         types * (2 * kMatteChannels * sizeof(float)) + (types ? kMatteSlotBytes : 0) + deep +
+         differences * sizeof(float) + kPlanBytes;
 }
 
 void check_film_memory(const View& view, std::size_t light_count, const RenderOptions& options) {

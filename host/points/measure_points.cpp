@@ -51,9 +51,9 @@ class Measurement {
   void run() {
     try {
       measure();
-    } catch (const Error&) {
+    } catch (const Error& error) {
       // A query that was stopped says so by an Error.
-      if (!result_.interrupted) throw;
+      if (!result_.interrupted || error.kind() != ErrorKind::failed) throw;
     }
     if (options_.report_bias > 0) result_.bias = sample_.report();
     if (options_.report_bias > 0 && is_corrected() && !result_.interrupted && result_.bias.empty())

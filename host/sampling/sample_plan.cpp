@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <set>
 
 #include "sampling/pilot_samples.hpp"
 #include "sampling/tile_order.hpp"
@@ -28,9 +29,13 @@ constexpr std::uint32_t kMaxAfterPilot = 4;
 /// many times: later rounds double the samples of some pixels only. Experiment 547.
 constexpr double kMaxMissing = 1.7;
 
-/// With SampleOrder::passes: samples of every pixel in the first pass, and the growth in each later
-/// one.
-constexpr std::uint32_t kFirst = 16, kPassGrowth = 3;
+/// Pixels that lack equal numbers of samples are a group, unless there are more numbers than this:
+/// checkpoints have a section for each group, and small groups are slow.
+constexpr std::size_t kMaxNumbers = 64;
+
+/// With SampleOrder::sweeps: samples of every pixel in the first sweep, and the growth in each
+/// later one.
+constexpr std::uint32_t kFirstSweep = 16, kSweepGrowth = 3;
 
 std::uint32_t whole_batches(int samples) {
   return (static_cast<std::uint32_t>(samples) + DAPPLE_SAMPLE_BATCH - 1) / DAPPLE_SAMPLE_BATCH *
@@ -152,18 +157,26 @@ std::vector<WorkGroup> SamplePlan::after_pilot(const PassVariances& variances) {
 std::vector<WorkGroup> SamplePlan::least(SampleOrder order) {
   if (min_of(samples_) >= min_) return {};
   if (all_equal(samples_)) return least_of_all(order);
+  std::set<std::uint32_t> numbers;
+  for (const std::uint32_t has : samples_) numbers.insert(lacks(has, order));
+  const bool splits = numbers.size() > kMaxNumbers;
   Groups groups;
   for (const std::uint32_t pixel : order_) {
     std::uint32_t& has = samples_[pixel];
-    const std::uint32_t more = lacks(has, order);
-    if (more > 0) add_to_group(groups, pixel, more, has, first_);
+    std::uint32_t left = lacks(has, order);
+    while (left > 0) {  // split into powers of two, as in next()
+      const std::uint32_t more = splits ? left & -left : left;
+      add_to_group(groups, pixel, more, has, first_);
+      left -= more;
+    }
   }
   return in_order(std::move(groups));
 }
 
 std::uint32_t SamplePlan::lacks(std::uint32_t has, SampleOrder order) const {
   const std::uint32_t more = min_ - std::min(has, min_);
-  return order == SampleOrder::passes ? std::min(more, std::max(kPassGrowth * has, kFirst)) : more;
+  return order == SampleOrder::sweeps ? std::min(more, std::max(kSweepGrowth * has, kFirstSweep))
+                                      : more;
 }
 
 std::vector<WorkGroup> SamplePlan::least_of_all(SampleOrder order) {

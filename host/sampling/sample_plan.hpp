@@ -18,7 +18,7 @@ enum class SampleOrder {
   pixels,  ///< all samples of a pixel, then those of the next
   /// Sixteen samples of every pixel, then three times what there are, so that the picture is whole
   /// early. Slower than `pixels`: experiment 515.
-  passes,
+  sweeps,
 };
 
 /// Samples that each pixel has with a target, if `spp` are asked for: whole batches, two at least.

@@ -113,7 +113,7 @@ class Scene:
 
     @property
     def lights(self) -> list[str]:
-        """Names of the lights. Those of a group share a layer of the group's name in results.
+        """Names of the lights. Those of a group share a layer of the group's name, but for irradiance().
 
         >>> dapple.load("scene:demo").lights
         ['sun', 'sky']

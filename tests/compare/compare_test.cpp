@@ -150,9 +150,15 @@ TEST(CompareWindow, IsTheLargestOfAllByBruteForce) {
 
 TEST(CompareFailure, NamesLayerAndFigureAndExemptsDistancesAndCounts) {
   const std::vector<float> b = constant(4, 1);
-  const Film film_b = film_of(2, 2, {{"Z", b}, {"ao.R", b}, {"samples", b}});
+  const Film film_b =
+      film_of(2, 2, {{"Z", b}, {"ao.R", b}, {"samples", b}, {"motion.X", b}, {"visits.nodes", b}});
   const std::vector<float> far = constant(4, 9);
-  const Film film_a = film_of(2, 2, {{"Z", far}, {"ao.R", constant(4, 1.25f)}, {"samples", far}});
+  const Film film_a = film_of(2, 2,
+                              {{"Z", far},
+                               {"ao.R", constant(4, 1.25f)},
+                               {"samples", far},
+                               {"motion.X", far},
+                               {"visits.nodes", far}});
   const Comparison c = compared(film_a, film_b);
   EXPECT_EQ(failure(c, std::nullopt), "");
   EXPECT_EQ(failure(c, 0.25), "");

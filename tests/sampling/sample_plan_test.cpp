@@ -266,6 +266,25 @@ TEST(SamplePlan, AfterThePilotNoPixelGetsMoreThanFourTimesTheMinimum) {
   EXPECT_NEAR(plan.fraction_done(), 32.0 / 4096, 1e-6) << "of the most";
 }
 
+TEST(SamplePlan, PixelsThatLackManyNumbersOfSamplesAreFewGroups) {
+  std::vector<std::uint32_t> samples(64 * 64);
+  for (std::size_t p = 0; p < samples.size(); ++p) samples[p] = 8 * static_cast<uint>(p % 1500);
+  RenderOptions options;
+  options.spp = 12000;
+  SamplePlan plan(64, 64, options, samples);
+  std::map<std::uint32_t, std::uint32_t> has;
+  const std::vector<WorkGroup> groups = plan.least();
+  EXPECT_LE(groups.size(), 14u);
+  for (const WorkGroup& group : groups)
+    for (const PixelWork& work : group.work) {
+      const auto [at, is_first] = has.try_emplace(work.pixel, samples[work.pixel]);
+      EXPECT_EQ(work.first_sample, at->second) << work.pixel;
+      at->second += group.samples;
+    }
+  for (const auto& [pixel, samples_of_pixel] : has) EXPECT_EQ(samples_of_pixel, 12000u) << pixel;
+  EXPECT_EQ(has.size(), samples.size());
+}
+
 TEST(SamplePlan, ByErrorThereIsNoPilot) {
   RenderOptions options;
   options.target_error = 0.1f;

@@ -33,17 +33,6 @@ std::vector<SideValue> trace_side(const TracePoints& trace, const BakeOptions& b
   return values;
 }
 
-/// The largest terms of the sums that are the coordinates of a triangle's points in the world: what
-/// these are rounded to, also where the sums are small.
-V3f reach_in_world(const V3f& reach, const M44f& to_world) {
-  V3f sum(0, 0, 0);
-  for (int axis = 0; axis < 3; ++axis) {
-    for (int row = 0; row < 3; ++row) sum[axis] += reach[row] * std::fabs(to_world[row][axis]);
-    sum[axis] += std::fabs(to_world[3][axis]);
-  }
-  return sum;
-}
-
 }  // namespace
 
 void Placements::add(const M44f& matrix) {

@@ -9,8 +9,9 @@
 namespace dapple {
 
 /// Packs up to eight segments. Codes are rounded to the nearest, so that errors average out. Errors
-/// are at most 1/65535 of the block's largest side for end points, and 1/510 of the block's maximum
-/// for radii and opacities. The maximum itself is exact.
+/// are at most 1/65535 of the block's largest side for end points, and 1/255 of the block's maximum
+/// for radii and opacities, less for small ones: codes are their square roots. The maximum itself
+/// is exact.
 SegmentBlock pack_segments(std::span<const StrandSegment> segments);
 
 /// Decodes a lane as kernels do.

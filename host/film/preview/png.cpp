@@ -95,7 +95,8 @@ std::uint8_t shown(float value, const Tone& tone) {
 }
 
 std::uint8_t byte_of(float value) {
-  return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255.0f));
+  const float clamped = value > 0 ? std::min(value, 1.0f) : 0.0f;  // NaN becomes 0
+  return static_cast<std::uint8_t>(std::lround(clamped * 255.0f));
 }
 
 /// RGBA, exposed, tone mapped and put over the background. Edges are mixed on the display's side: a

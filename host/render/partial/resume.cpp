@@ -90,7 +90,7 @@ void write_checkpoints(TraceControl& tracing, const RenderControl& control, Chec
     };
   }
   if (control.checkpoint.empty()) return;
-  tracing.order = SampleOrder::passes;
+  tracing.order = SampleOrder::sweeps;
   tracing.save_every = control.checkpoint_every;
   auto stopped = std::make_shared<bool>(false);
   if (control.stop) tracing.stop = [&control, stopped] { return *stopped = control.stop(); };

@@ -47,6 +47,21 @@ void smooth(const V3f& geometric, const V3f& shift, SurfacePoint& point) {
 
 }  // namespace
 
+V3f reach_in_world(const V3f& reach, const M44f& to_world) {
+  V3f sum(0, 0, 0);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int row = 0; row < 3; ++row) sum[axis] += reach[row] * std::fabs(to_world[row][axis]);
+    sum[axis] += std::fabs(to_world[3][axis]);
+  }
+  return sum;
+}
+
+float offset_above_plane(const V3f& reach, const V3f& normal) {
+  float along = 0;
+  for (int axis = 0; axis < 3; ++axis) along += reach[axis] * std::fabs(normal[axis]);
+  return along * kTermsOfReach * kAlongNormal;
+}
+
 SharedPoints::SharedPoints(DeviceContext& context, const QueryPoints& points,
                            std::span<const std::uint32_t> chosen, const SceneParams& scene)
     : context_(context) {

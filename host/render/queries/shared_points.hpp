@@ -16,6 +16,14 @@ namespace dapple {
 /// A rounding of a term of QueryPoints::reaches counts as this part of one of a coordinate.
 inline constexpr float kTermsOfReach = 1.0f / 8;
 
+/// The largest terms of the sums that are the coordinates of points in the world: what these are
+/// rounded to, also where the sums are small. `reach`: of the points' coordinates in object space,
+/// not negative.
+V3f reach_in_world(const V3f& reach, const M44f& to_world);
+
+/// How far above a plane rays start whose origins are on it but for roundings of such terms.
+float offset_above_plane(const V3f& reach, const V3f& normal);
+
 /// Points from which rays start, in world space.
 struct QueryPoints {
   std::span<const V3f> positions;

@@ -33,15 +33,6 @@ void add_ground_square(Scene& scene, float side) {
   place(scene, std::move(ground));
 }
 
-// In metres; 0 means automatic. Float's rounding would destroy leaves shorter than a millimetre.
-float given_leaf_length(const ProceduralParameters& parameters) {
-  const float length = parameters.real("leaf_size");
-  if (length > 0 && length < 0.001f) {
-    throw Error(ErrorKind::usage, "leaf_size must be 0 (automatic) or at least 0.001 m");
-  }
-  return length;
-}
-
 float cloud_leaf_length(const ProceduralParameters& parameters) {
   if (const float given = given_leaf_length(parameters); given > 0) return given;
   // leaves * length^2 is constant, so that any number of leaves has the leaf area of 20,000 leaves
@@ -84,6 +75,15 @@ V3f color_named(const std::string& name) {
 }
 
 }  // namespace
+
+float given_leaf_length(const ProceduralParameters& parameters) {
+  const float length = parameters.real("leaf_size");
+  if (length > 0 && length < 0.001f) {
+    throw Error(ErrorKind::usage,
+                parameters.scene() + ": leaf_size must be 0 (automatic) or at least 0.001 m");
+  }
+  return length;
+}
 
 Material blend_material(const std::string& name, float opacity) {
   Material material;

@@ -19,6 +19,8 @@ class ProceduralParameters {
   ProceduralParameters(const ProceduralHelp& scene, std::string_view query,
                        std::optional<double> time = {});
 
+  /// As typed, without parameters: "scene:tree".
+  [[nodiscard]] const std::string& scene() const { return scene_; }
   /// The value of a parameter of the scene's table.
   [[nodiscard]] float real(std::string_view name) const;
   [[nodiscard]] std::uint32_t whole(std::string_view name) const;

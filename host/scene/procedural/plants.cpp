@@ -17,8 +17,10 @@ constexpr std::uint64_t kStemStream = 0x7374656d73ULL;  // above the streams of 
 /// The mean blade length, metres: `usual` for `usual_count` blades, and such that more have the
 /// same area; or the one asked for.
 float blade_length(const ProceduralParameters& parameters, float usual, float usual_count) {
-  if (const float given = parameters.real("leaf_size"); given > 0) return std::max(given, 0.001f);
-  return usual * std::sqrt(usual_count / static_cast<float>(parameters.whole("leaves")));
+  if (const float given = given_leaf_length(parameters); given > 0) return given;
+  constexpr float kMost = 10;  // times the usual length, where there are few blades
+  return usual *
+         std::min(kMost, std::sqrt(usual_count / static_cast<float>(parameters.whole("leaves"))));
 }
 
 Scene scene_of_plant(const ProceduralParameters& parameters, Mesh mesh, const char* name) {

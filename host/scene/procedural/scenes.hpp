@@ -36,6 +36,10 @@ Scene make_sieve_scene(const ProceduralParameters& parameters);
 Material blend_material(const std::string& name, float opacity);
 Material opaque_material(const std::string& name);
 
+/// The parameter `leaf_size`, metres; 0: automatic. Throws Error usage for less than a millimetre,
+/// of which the rounding of floats would leave no leaf.
+float given_leaf_length(const ProceduralParameters& parameters);
+
 /// Adds `mesh` and one instance of it, without a transformation.
 void place(Scene& scene, Mesh mesh);
 

@@ -149,7 +149,7 @@ void expect_passes_to_add_up(const Scene& scene) {
   options.spp = 100;
   const Tracing tracing(tree, options);
   TraceControl passes;
-  passes.order = SampleOrder::passes;
+  passes.order = SampleOrder::sweeps;
   const TracedPicture a = tracing.trace(), b = tracing.trace(passes);
   EXPECT_EQ(a.samples, b.samples);
   const std::size_t pixels = a.samples.size();

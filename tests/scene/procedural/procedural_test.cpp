@@ -336,7 +336,18 @@ TEST(Procedural, AValueThatIsNoNumberOrOutOfRangeIsRefused) {
             "scene:tree: \"opacity\" is not of the form key=value");
   EXPECT_EQ(complaint("scene:tree?seed=1&seed=2"), "scene:tree: seed is given twice");
   EXPECT_EQ(complaint("scene:cloud?leaf_size=1e-9"),
-            "leaf_size must be 0 (automatic) or at least 0.001 m");
+            "scene:cloud: leaf_size must be 0 (automatic) or at least 0.001 m");
+  EXPECT_EQ(complaint("scene:palm?leaf_size=0.0005"),
+            "scene:palm: leaf_size must be 0 (automatic) or at least 0.001 m");
+}
+
+TEST(Procedural, OneLeafIsNoLargerThanItsPlant) {
+  for (const char* plant : {"palm", "conifer", "willow", "tree"}) {
+    const std::string scene = "scene:" + std::string(plant) + "?height=2&leaves=";
+    const V3f one = scene_bounds(load_scene(scene + "1")).size();
+    const V3f many = scene_bounds(load_scene(scene + "10000")).size();
+    EXPECT_LT(one.length(), 1.5f * many.length()) << plant;
+  }
 }
 
 TEST(LoadScene, ASceneNameIsMadeAndRemembered) {
