@@ -22,8 +22,8 @@ const std::vector<std::string> kHostRooms{"files",  "scene",    "bvh",     "devi
                                           "film",   "sampling", "passes",  "render", "bake",
                                           "points", "compare",  "commands"};
 const std::vector<std::string> kKernelRooms{"vectors", "sampling",  "geometry", "intersect",
-                                            "opacity", "occlusion", "camera",   "scalar",
-                                            "film",    "lights"};
+                                            "opacity", "occlusion", "film",     "camera",
+                                            "scalar",  "shading",   "lights"};
 
 /// A library's headers, and the folders and files that may include them.
 struct Library {

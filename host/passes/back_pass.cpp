@@ -19,7 +19,6 @@ uint groups_touched(const SliceParams& slice, std::span<const PixelWork> work, u
 
 SliceParams packed_slice(const BackParams& choice) {
   SliceParams packed = choice.resolve.slice;
-  packed.first_sample = 0;
   packed.sample_count = choice.slots;
   return packed;
 }

@@ -34,8 +34,8 @@ void shade(DeviceContext& context, const DeviceBuffers& scene, const Queues& que
 }  // namespace
 
 KernelName shading_kernel(const DeviceContext& context) {
-  if (traces_scalar(context)) return {"shade_points_scalar", "film/shading_scalar", {}};
-  return {"shade_points", "film/shading", {}};
+  if (traces_scalar(context)) return {"shade_points_scalar", "shading/shade_points_scalar", {}};
+  return {"shade_points", "shading/shade_points", {}};
 }
 
 void shading_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,

@@ -14,6 +14,7 @@
 #include "points/bias_sample.hpp"
 #include "points/local_footprint.hpp"
 #include "points/periodic.hpp"
+#include "points/point_ray.hpp"
 #include "points/ray_slices.hpp"
 #include "points/ring_rays.hpp"
 #include "points/set_sums.hpp"

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
+#include "points/point_ray.hpp"
 #include "points/ray_slices.hpp"
 #include "sampling/random_choice.hpp"
 
@@ -27,25 +27,6 @@ std::vector<ZenithRing> zenith_rings(int count) {
     rings.push_back({std::cos(inner * kDegree), std::cos(outer * kDegree)});
   }
   return rings;
-}
-
-/// Rays start above a point by this part of its largest coordinate: 64 roundings, as those of
-/// shared_points.cpp do.
-constexpr float kStart = 3.8e-6f;
-
-Ray point_ray(const V3f& point, const V3f& normal, const V3f& direction, float solid_angle,
-              std::uint32_t key) {
-  Ray ray{};
-  const float start =
-      std::max({std::fabs(point.x), std::fabs(point.y), std::fabs(point.z)}) * kStart;
-  for (int axis = 0; axis < 3; ++axis) {
-    ray.origin[axis] = point[axis] + normal[axis] * start;
-    ray.direction[axis] = direction[axis];
-  }
-  ray.t_max = std::numeric_limits<float>::infinity();
-  ray.solid_angle = solid_angle;
-  ray.key = key;
-  return ray;
 }
 
 void fill_ring_rays(const V3f& point, const ZenithRing& ring, std::uint32_t random,

@@ -20,11 +20,6 @@ struct ZenithRing {
 /// `count` rings: for 5 those of the LAI-2200, else of equal width from 0 to 90 degrees.
 std::vector<ZenithRing> zenith_rings(int count);
 
-/// A ray without an end from a point, off it along `normal` by more than rounding errors. `key`:
-/// random bits, which scale its footprint.
-Ray point_ray(const V3f& point, const V3f& normal, const V3f& direction, float solid_angle,
-              std::uint32_t key);
-
 /// Fills `rays`, uniform by solid angle within a ring: a Vogel spiral, turned by random bits.
 void fill_ring_rays(const V3f& point, const ZenithRing& ring, std::uint32_t random,
                     std::span<Ray> rays);

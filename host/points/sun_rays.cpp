@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "points/ring_rays.hpp"
+#include "points/point_ray.hpp"
 #include "sampling/random_choice.hpp"
 
 namespace dapple {

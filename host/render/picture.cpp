@@ -184,8 +184,8 @@ class PictureTracer {
     return !state_.round.is_done();
   }
 
-  std::vector<WorkGroup> next_for_target(SamplePlan& plan) {
-    std::vector<WorkGroup> groups = plan.pilot();
+  std::vector<SampleGroup> next_for_target(SamplePlan& plan) {
+    std::vector<SampleGroup> groups = plan.pilot();
     if (!groups.empty()) return groups;
     const bool only_pilot = plan.only_pilot_has_samples();
     // Rounding makes errors depend on the order of samples; with a target the order is always the
@@ -211,7 +211,7 @@ class PictureTracer {
     for (bool new_group = true; !round.is_done(); new_group = round.entry + round.sample == 0) {
       if (!save_if_due(plan, control)) return false;
       if (control.stop && control.stop()) return false;
-      const WorkGroup& group = round.groups[round.group];
+      const SampleGroup& group = round.groups[round.group];
       const SliceParams slice = next_slice(round, state_.slice_samples);
       if (backs_ && !backs_->fits(slice, group.work)) trace_backs();
       if (new_group)

@@ -8,7 +8,7 @@ namespace dapple {
 namespace {
 
 /// Samples per pixel in a slice: all if they fit, else whole pairs of batches, or one batch.
-std::uint32_t samples_at_once(const WorkGroup& group, std::uint32_t slice_samples) {
+std::uint32_t samples_at_once(const SampleGroup& group, std::uint32_t slice_samples) {
   if (group.samples <= slice_samples) return group.samples;
   const std::uint32_t pairs = slice_samples / (2 * DAPPLE_SAMPLE_BATCH);
   return pairs ? pairs * 2 * DAPPLE_SAMPLE_BATCH : DAPPLE_SAMPLE_BATCH;
@@ -22,7 +22,7 @@ constexpr std::uint32_t kMaxEntries = 65'472;
 /// Samples of a pixel at least, on average over a slice of the largest number of pixels.
 constexpr std::uint32_t kMinSamplesOfEntry = 32;
 
-std::uint32_t entries_at_once(const WorkGroup& group, std::uint32_t slice_samples) {
+std::uint32_t entries_at_once(const SampleGroup& group, std::uint32_t slice_samples) {
   return std::min(slice_samples / samples_at_once(group, slice_samples),
                   max_entries(slice_samples));
 }
@@ -41,7 +41,7 @@ std::uint32_t max_entries(std::uint32_t slice_samples) {
 }
 
 SliceParams next_slice(const Round& round, std::uint32_t slice_samples) {
-  const WorkGroup& group = round.groups[round.group];
+  const SampleGroup& group = round.groups[round.group];
   const auto count = static_cast<std::uint32_t>(group.work.size());
   return {round.entry, std::min(entries_at_once(group, slice_samples), count - round.entry),
           round.sample,
@@ -50,7 +50,7 @@ SliceParams next_slice(const Round& round, std::uint32_t slice_samples) {
 
 void advance(Round& round, std::uint32_t slice_samples) {
   const SliceParams slice = next_slice(round, slice_samples);
-  const WorkGroup& group = round.groups[round.group];
+  const SampleGroup& group = round.groups[round.group];
   round.sample += slice.sample_count;
   if (round.sample < group.samples) return;
   round.sample = 0;
@@ -64,7 +64,7 @@ std::vector<std::uint32_t> traced_samples(const Round& round, std::uint32_t slic
                                           const std::vector<std::uint32_t>& given) {
   std::vector<std::uint32_t> samples = given;
   for (std::size_t g = round.group; g < round.groups.size(); ++g) {
-    const WorkGroup& group = round.groups[g];
+    const SampleGroup& group = round.groups[g];
     const bool begun = g == round.group;
     const std::size_t first = begun ? round.entry : 0;
     const std::size_t part_end = begun ? first + entries_at_once(group, slice_samples) : 0;

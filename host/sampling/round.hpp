@@ -12,14 +12,14 @@
 namespace dapple {
 
 /// Pixels that get the same number of samples.
-struct WorkGroup {
+struct SampleGroup {
   std::uint32_t samples = 0;
   std::vector<PixelWork>
       work;  ///< tile by tile, so that pixels that are traced together are adjacent
 };
 
 struct Round {
-  std::vector<WorkGroup> groups;  ///< to be traced in this order
+  std::vector<SampleGroup> groups;  ///< to be traced in this order
   std::uint32_t group = 0;        ///< start of the next slice: group, entry of its work, and
   std::uint32_t entry = 0;        ///< sample, counted from the entry's own first
   std::uint32_t sample = 0;

@@ -87,18 +87,18 @@ bool all_equal(const std::vector<std::uint32_t>& values) {
 }
 
 /// Groups of pixels by the number of samples that they get.
-using Groups = std::map<std::uint32_t, WorkGroup>;
+using Groups = std::map<std::uint32_t, SampleGroup>;
 
 void add_to_group(Groups& groups, std::uint32_t pixel, std::uint32_t more, std::uint32_t& has,
                   std::uint32_t first = 0) {
-  WorkGroup& group = groups[more];
+  SampleGroup& group = groups[more];
   group.samples = more;
   group.work.push_back({pixel, first + has});
   has += more;
 }
 
-std::vector<WorkGroup> in_order(Groups&& groups) {
-  std::vector<WorkGroup> out;
+std::vector<SampleGroup> in_order(Groups&& groups) {
+  std::vector<SampleGroup> out;
   for (auto& [size, group] : groups) out.push_back(std::move(group));
   return out;
 }
@@ -126,7 +126,7 @@ SamplePlan::SamplePlan(int width, int height, const RenderOptions& options,
                             DAPPLE_SAMPLE_BATCH);
 }
 
-std::vector<WorkGroup> SamplePlan::pilot() {
+std::vector<SampleGroup> SamplePlan::pilot() {
   if (target_.rmse <= 0 || samples_.front() > 0 || !all_equal(samples_)) return {};
   const std::vector<bool> pilot = pilot_pixels(width_, height());
   if (pilot.empty()) return {};
@@ -140,7 +140,7 @@ bool SamplePlan::only_pilot_has_samples() const {
   return is_adaptive() && min_of(samples_) == 0 && !all_equal(samples_);
 }
 
-std::vector<WorkGroup> SamplePlan::after_pilot(const PassVariances& variances) {
+std::vector<SampleGroup> SamplePlan::after_pilot(const PassVariances& variances) {
   double batches = 0, varied = 0;
   for (const std::vector<float>& pass : variances) {
     const std::vector<float> pilot = of_sampled(order_, samples_, pass);
@@ -154,7 +154,7 @@ std::vector<WorkGroup> SamplePlan::after_pilot(const PassVariances& variances) {
   return least();
 }
 
-std::vector<WorkGroup> SamplePlan::least(SampleOrder order) {
+std::vector<SampleGroup> SamplePlan::least(SampleOrder order) {
   if (min_of(samples_) >= min_) return {};
   if (all_equal(samples_)) return least_of_all(order);
   std::set<std::uint32_t> numbers;
@@ -179,11 +179,11 @@ std::uint32_t SamplePlan::lacks(std::uint32_t has, SampleOrder order) const {
                                       : more;
 }
 
-std::vector<WorkGroup> SamplePlan::least_of_all(SampleOrder order) {
+std::vector<SampleGroup> SamplePlan::least_of_all(SampleOrder order) {
   const std::uint32_t has = samples_.front(), more = lacks(has, order);
   if (more == 0) return {};
-  std::vector<WorkGroup> groups(1);
-  WorkGroup& all = groups.front();
+  std::vector<SampleGroup> groups(1);
+  SampleGroup& all = groups.front();
   all.samples = more;
   all.work.resize(order_.size());
   tbb::parallel_for(std::size_t{0}, order_.size(), [&](std::size_t i) {
@@ -193,7 +193,7 @@ std::vector<WorkGroup> SamplePlan::least_of_all(SampleOrder order) {
   return groups;
 }
 
-std::vector<WorkGroup> SamplePlan::next(const PassVariances& variances) {
+std::vector<SampleGroup> SamplePlan::next(const PassVariances& variances) {
   const BatchCounts have = batches_of(samples_);
   const std::uint32_t max = max_ / DAPPLE_SAMPLE_BATCH;
   const BatchCounts of_blocks = allocate_batches(variances, have, width_, target_, max);

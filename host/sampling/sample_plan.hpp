@@ -36,23 +36,23 @@ class SamplePlan {
 
   /// The minimum for pilot_pixels(). Empty without a target RMSE, for small pictures, and once
   /// pixels have samples.
-  std::vector<WorkGroup> pilot();
+  std::vector<SampleGroup> pilot();
   /// The minimum of samples that each pixel gets; without a target it gets no more.
   [[nodiscard]] std::uint32_t minimum() const { return min_; }
   [[nodiscard]] bool only_pilot_has_samples() const;
   /// Raises the minimum, up to four times, to the number of samples with which all pilot pixels
   /// together have the target RMSE, rounded to a power of two: down if that is enough for most
   /// pixels. Returns least().
-  std::vector<WorkGroup> after_pilot(const PassVariances& variances);
+  std::vector<SampleGroup> after_pilot(const PassVariances& variances);
 
   /// What pixels lack to the minimum, or without a target to the number that each gets; empty if
   /// none does.
-  std::vector<WorkGroup> least(SampleOrder order = SampleOrder::pixels);
+  std::vector<SampleGroup> least(SampleOrder order = SampleOrder::pixels);
 
   /// With a target: the samples that are missing for it; empty if none are. No pixel gets more than
   /// eight times what it has, so that the next decision is based on more samples; pixels of a block
   /// get the same. A pixel may be in several groups, which are traced in their order.
-  std::vector<WorkGroup> next(const PassVariances& variances);
+  std::vector<SampleGroup> next(const PassVariances& variances);
 
   /// Samples of each pixel once all groups that were returned are traced.
   [[nodiscard]] const std::vector<std::uint32_t>& samples() const { return samples_; }
@@ -64,7 +64,7 @@ class SamplePlan {
   /// Samples that least() adds to a pixel.
   [[nodiscard]] std::uint32_t lacks(std::uint32_t has, SampleOrder order) const;
   /// least() if all pixels have the same number of samples.
-  std::vector<WorkGroup> least_of_all(SampleOrder order);
+  std::vector<SampleGroup> least_of_all(SampleOrder order);
   [[nodiscard]] int height() const { return static_cast<int>(samples_.size()) / width_; }
 
   int width_;

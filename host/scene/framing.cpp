@@ -29,20 +29,55 @@ Box3f bounds_or_unit_box(const Scene& scene, const M44f& transform = {}) {
                           : bounds;
 }
 
-// Where a camera is along `across`, and at least how far back. It sees p between two planes if
-// |across . (p - camera)| <= tangent * back . (camera - p). So the two functions of p below are
-// largest where the planes touch the scene.
-struct Fit {
-  float across = 0, back = 0;
+/// Two directions of a picture: a camera sees p between two planes if |across . (p - camera)| <=
+/// tangent * back . (camera - p).
+struct Axis {
+  V3f across, back;
 };
-Fit fit_between_planes(const Scene& scene, V3f across, V3f back, float tangent) {
-  const V3f first = across + tangent * back, second = -across + tangent * back;
-  const M44f functions(first.x, second.x, back.x, 0, first.y, second.y, back.y, 0,  //
-                       first.z, second.z, back.z, 0, 0, 0, 0, 1);
-  const Box3f box = bounds_or_unit_box(scene, functions);
+
+/// The largest values over the scene of across . p + tangent * back . p, of the same with -across,
+/// and of back . p: where the planes touch the scene.
+struct Touch {
+  float right = 0, left = 0, front = 0, depth = 0;
+  Touch(const Scene& scene, const Axis& axis, float tangent) {
+    const V3f a = axis.across + tangent * axis.back, b = -axis.across + tangent * axis.back;
+    const M44f functions(a.x, b.x, axis.back.x, 0, a.y, b.y, axis.back.y, 0,  //
+                         a.z, b.z, axis.back.z, 0, 0, 0, 0, 1);
+    const Box3f box = bounds_or_unit_box(scene, functions);
+    right = box.max.x;
+    left = box.max.y;
+    front = box.max.z;
+    depth = box.size().z;
+  }
+};
+
+/// How far back a camera must at least be.
+float least_distance(const Touch& touch, float tangent) {
   // The camera is in front of everything, also where the scene is a line along its view or a point.
-  const float closest = box.max.z + (box.size().z > 0 ? 0.1f * box.size().z : 1);
-  return {(box.max.x - box.max.y) / 2, std::max((box.max.x + box.max.y) / (2 * tangent), closest)};
+  const float closest = touch.front + (touch.depth > 0 ? 0.1f * touch.depth : 1);
+  return std::max((touch.right + touch.left) / (2 * tangent), closest);
+}
+
+/// Where a camera at `distance` along `back` is along `across` so that the picture has equal
+/// margins: planes of a smaller tangent touch the scene on both sides. `touch`: at `tangent`.
+float centred(const Scene& scene, const Axis& axis, Touch touch, float tangent, float distance) {
+  constexpr int kSteps = 4;         // each visits all vertices
+  constexpr float kEnough = 1e-3f;  // of the frame
+  const auto slack = [&](const Touch& at, float of) {
+    return 2 * of * distance - at.right - at.left;
+  };
+  // The slack is concave in the tangent, negative at 0, and 0 or more at `tangent`: chords from 0
+  // never pass the tangent that is sought.
+  float none = 0, wide = tangent;
+  for (int step = 0; step < kSteps; ++step) {
+    const float has = slack(touch, wide);
+    if (!(has > kEnough * tangent * distance)) break;
+    if (step == 0) none = slack(Touch(scene, axis, 0), 0);
+    if (!(none < 0)) break;
+    wide *= none / (none - has);
+    touch = Touch(scene, axis, wide);
+  }
+  return (touch.right - touch.left) / 2;
 }
 
 void require_field_of_view(float fov_y) {
@@ -82,10 +117,12 @@ Camera frame_scene(const Scene& scene, float aspect, float fov_y) {
   const float tangent = std::tan(fov_y / 2) / kFrameMargin;
   const V3f right = row(camera.to_world, 0), up = row(camera.to_world, 1),
             back = row(camera.to_world, 2);
-  const Fit horizontal = fit_between_planes(scene, right, back, tangent * aspect);
-  const Fit vertical = fit_between_planes(scene, up, back, tangent);
-  const V3f from = right * horizontal.across + up * vertical.across +
-                   back * std::max(horizontal.back, vertical.back);
+  const Axis horizontal{right, back}, vertical{up, back};
+  const float wide = tangent * aspect;
+  const Touch sides(scene, horizontal, wide), ends(scene, vertical, tangent);
+  const float distance = std::max(least_distance(sides, wide), least_distance(ends, tangent));
+  const V3f from = right * centred(scene, horizontal, sides, wide, distance) +
+                   up * centred(scene, vertical, ends, tangent, distance) + back * distance;
   for (int k = 0; k < 3; ++k) camera.to_world[3][k] = from[k];
   camera.name = "frame";
   return camera;

@@ -88,10 +88,4 @@ struct PointResult {
 PointResult measure_points(Scene scene, std::span<const V3f> points, std::span<const V3f> normals,
                            const PointOptions& options = {}, const RenderControl& control = {});
 
-/// A sky of the CIE standard overcast luminance (Moon and Spencer, 1942), 1 + 2 cos(zenith angle)
-/// to 3, or of uniform luminance, whose irradiance on an open horizontal plane is 1 W/m^2; dark
-/// below the horizon.
-Light overcast_sky();
-Light uniform_sky();
-
 }  // namespace dapple

@@ -219,6 +219,12 @@ std::shared_ptr<const Environment> load_environment(const std::string& path);
 /// A dome with the image at `path`, as load_environment() reads it. Throws Error: input.
 Light dome_light(const std::string& name, const std::string& path);
 
+/// A sky of the CIE standard overcast luminance (Moon and Spencer, 1942), 1 + 2 cos(zenith angle)
+/// to 3, or of uniform luminance, whose irradiance on an open horizontal plane is 1 W/m^2; dark
+/// below the horizon.
+Light overcast_sky();
+Light uniform_sky();
+
 /// Prepares dome images for sampling: reduces images of more than 2048 x 1024 pixels by averaging,
 /// divides each by its mean luminance, and multiplies the light's radiance by that luminance.
 void finalize_domes(Scene& scene);

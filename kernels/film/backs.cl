@@ -73,7 +73,7 @@ __kernel void count_backs(__global const PixelWork* work, __global const SampleH
     hits += sample_hit(flipped_hits, local_pixel * params.slots + slot) ? 1u : 0u;
   }
   if (!chosen) return;
-  const FilmPixel pixel = {entry.pixel, true};
+  const FilmPixel pixel = film_pixel(work, params.resolve, local_pixel);
   add_to_plane(film, params.resolve, DAPPLE_PLANE_BACK_CHOSEN, pixel, (long)chosen);
   if (hits) add_to_plane(film, params.resolve, DAPPLE_PLANE_BACK_HITS, pixel, (long)hits);
 }

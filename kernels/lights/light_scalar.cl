@@ -28,7 +28,7 @@ __kernel void light_rays_scalar(__global const SurfacePoint* points, __global co
   float radiance;
   const LightSample sample = choose_light_sample(light, emitters, environments, &ray, &radiance);
   RayDirection aimed = aim_light_ray(&ray, sample, radiance, params.inverse_count);
-  keep_ray_clear(&ray, params.viewpoint, &aimed);
-  if (params.shaded) hide_ray_below(&ray, &aimed);
+  limit_near_view_ray_scalar(&ray, params.viewpoint, &aimed);
+  if (params.shaded) hide_below_scalar(&ray, &aimed);
   store_ray(&ray, &aimed, light->id, queue + item);
 }

@@ -31,7 +31,7 @@ __kernel void ao_rays_scalar(__global const SurfacePoint* points, __global const
   if (item >= params.point_count * params.rays) return;
   const PointRay ray = load_point_ray(points, active_list, item, params.rays, DAPPLE_PAIR_AO, params.seed);
   RayDirection aimed = aim_ao_ray(&ray, params);
-  keep_ray_clear(&ray, params.viewpoint, &aimed);
-  if (params.shaded) hide_ray_below(&ray, &aimed);
+  limit_near_view_ray_scalar(&ray, params.viewpoint, &aimed);
+  if (params.shaded) hide_below_scalar(&ray, &aimed);
   store_ray(&ray, &aimed, 0u, queue + item);
 }

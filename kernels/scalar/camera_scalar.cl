@@ -32,7 +32,7 @@ DAPPLE_INLINE SearchCosts trace_ray(Scene scene, CameraParams params, uint numbe
   const CameraSample chosen = choose_sample(work, params, number);
   if (!may_see(params, &chosen)) return none;
   const CameraRay ray = aim_ray(params, &chosen);
-  SampleStops stops;
+  StochasticHitsScalar stops;
   stops.count = 1u << params.splitting_bits;
   for (uint d = 0; d < stops.count; ++d) {
     stops.threshold[d] = threshold_of_sample(params, &chosen, d);

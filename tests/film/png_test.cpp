@@ -151,6 +151,16 @@ TEST_F(Png, ThinCoverageCountsByItsAlphaForTheExposure) {
   EXPECT_GT(automatic_exposure(film), 0.6f * automatic_exposure(lit_film({1, 1}, 0.5f, 1)));
 }
 
+TEST_F(Png, TheMiddleCountsMoreForTheExposure) {
+  Film dark_edges = lit_film({1, 1, 1}, 0.5f, 0.5f), dark_middle = dark_edges;
+  for (std::size_t p = 0; p < 3; ++p)
+    for (Film* film : {&dark_edges, &dark_middle})
+      for (Plane& plane : film->planes)
+        if (plane.channel.size() == 1 && plane.channel != "A" && (p == 1) == (film == &dark_middle))
+          plane.pixels[p] *= 0.1f;
+  EXPECT_GT(automatic_exposure(dark_middle), 2 * automatic_exposure(dark_edges));
+}
+
 // The camera looks down by 45 degrees with a field of view of 90: the upper edge is the horizon.
 TEST_F(Png, TheHorizonOfTheBackgroundIsTheCameras) {
   Film film;

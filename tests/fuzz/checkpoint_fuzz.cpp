@@ -35,7 +35,7 @@ void require(bool condition) {
 void trace(Round round, std::uint32_t slice_samples) {
   for (int slices = 0; !round.is_done() && slices < kMaxSlices; ++slices) {
     const SliceParams slice = next_slice(round, slice_samples);
-    const WorkGroup& group = round.groups[round.group];
+    const SampleGroup& group = round.groups[round.group];
     require(slice.pixel_count > 0 && slice.sample_count > 0);
     require(std::size_t{slice.first_work} + slice.pixel_count <= group.work.size());
     require(std::uint64_t{slice.pixel_count} * slice.sample_count <= slice_samples);

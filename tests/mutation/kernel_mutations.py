@@ -9,12 +9,22 @@ MUTATIONS = [
         "normal_error += sqrt(dot_16(normal, normal)) * terms[axis] +",
         r"^RayOrigin\."),
     Mutation(
+        "sums-forget-earlier-rounds", "kernels/film/film.clh",
+        "pixel.has_samples = entry.first_sample + params.slice.first_sample != params.first_sample;",
+        "pixel.has_samples = params.slice.first_sample != 0u;",
+        r"^Resume\."),
+    Mutation(
+        "sums-forget-earlier-slices", "kernels/film/film.clh",
+        "pixel.has_samples = entry.first_sample + params.slice.first_sample != params.first_sample;",
+        "pixel.has_samples = entry.first_sample != params.first_sample;",
+        r"^Resume\."),
+    Mutation(
         "slab-sign", "kernels/occlusion/packet_node.clh",
         "const bool flip = in_order && rays->backward[axis];",
         "const bool flip = in_order && !rays->backward[axis];",
         r"^(Packet|ClosedForm)\."),
     Mutation(
-        "normals-face-away-from-the-viewer", "kernels/camera/smooth_point.clh",
+        "normals-face-away-from-the-viewer", "kernels/shading/smooth_point.clh",
         "if (!(towards * straight < 0.0f)) return normal;",
         "if (straight > 0.0f) return normal;",
         r"^ShadingNormal\."),
@@ -167,12 +177,12 @@ MUTATIONS = [
         "(long)(count - traced) * (long)DAPPLE_AO_STEPS",
         r"^(ShadingNormal|SmoothBake|PointAo)\."),
     Mutation(
-        "shading-normal-as-a-direction", "kernels/camera/smooth_point.clh",
+        "shading-normal-as-a-direction", "kernels/shading/smooth_point.clh",
         "normal = transform_normal(at->to_object, normal);",
         "normal = transform_vector(at->to_world, normal);",
         r"^(ShadingNormal|GltfNormals)\."),
     Mutation(
-        "shading-normal-of-the-wrong-corner", "kernels/camera/shading_normal.clh",
+        "shading-normal-of-the-wrong-corner", "kernels/shading/shading_normal.clh",
         "corner_normals(first >> 21 | (last & 1023u) << 11, normal1);\n"
         "  corner_normals(last >> 10 & 0x1fffffu, normal2);",
         "corner_normals(last >> 10 & 0x1fffffu, normal1);\n"
@@ -199,12 +209,12 @@ MUTATIONS = [
         "hit & (at->cumulative.v <= threshold)",
         r"^(KBufferOnDevice|CameraSplitting|DeepAlpha)"),
     Mutation(
-        "vertex-colour-without-decoding", "kernels/camera/color_entry.clh",
+        "vertex-colour-without-decoding", "kernels/shading/color_entry.clh",
         "  return root * root;\n",
         "  return root;\n",
         r"^(Albedo|GltfColors)\."),
     Mutation(
-        "bilinear-weight-of-colours", "kernels/camera/surface_color.clh",
+        "bilinear-weight-of-colours", "kernels/shading/surface_color.clh",
         "weight[0] = 1.0f - at.right - weight[2];",
         "weight[0] = 1.0f - at.right - at.down;",
         r"^Albedo\."),

@@ -223,7 +223,7 @@ MUTATIONS = [
         "/ sets_;",
         r"^SetSums\."),
     Mutation(
-        "sky-of-the-wrong-strength", "host/points/sky.cpp",
+        "sky-of-the-wrong-strength", "host/scene/lights/sky.cpp",
         "value * pi * (top * top - bottom * bottom);",
         "value * 2 * pi * (top - bottom);",
         r"^(Points|PointTheory)\."),
@@ -322,4 +322,24 @@ MUTATIONS = [
         "} else if (std::isnan(a) || std::isnan(b)) {",
         "} else if (std::isnan(a) && std::isnan(b)) {",
         r"^(CompareLayers|CompareFailure|CompareFigures)\."),
+    Mutation(
+        "points-on-large-triangles", "host/points/point_sources.cpp",
+        "normal * offset_above_plane(triangle.reach, normal)",
+        "normal * 0.0f",
+        r"^PointSources\."),
+    Mutation(
+        "pictures-that-are-not-centred", "host/scene/framing.cpp",
+        "wide *= none / (none - has);",
+        "wide *= 1.0f;",
+        r"^FrameScene\."),
+    Mutation(
+        "backs-forget-earlier-slices", "host/passes/back_pass.cpp",
+        "  packed.sample_count = choice.slots;",
+        "  packed.first_sample = 0;\n  packed.sample_count = choice.slots;",
+        r"^(Resume|BackSlices|BackSlicesOfDevice|Backs)\."),
+    Mutation(
+        "exposure-of-all-alike", "host/film/preview/tone_map.cpp",
+        "const float off = (static_cast<float>(i) + 0.5f) / static_cast<float>(size) - 0.5f;",
+        "const float off = 0.0f * static_cast<float>(i);",
+        r"^Png\."),
 ]

@@ -42,7 +42,7 @@ TEST(Round, EverySampleIsTracedOnceInOrderAndCountedWhereverARoundStops) {
         const SliceParams slice = next_slice(round, slice_samples);
         EXPECT_LE(slice.pixel_count * slice.sample_count, slice_samples);
         EXPECT_GT(slice.pixel_count * slice.sample_count, 0u);
-        const WorkGroup& group = round.groups[round.group];
+        const SampleGroup& group = round.groups[round.group];
         const bool ends = slice.first_sample + slice.sample_count == group.samples;
         const std::uint32_t whole = slice_samples < 2 * DAPPLE_SAMPLE_BATCH ? 1 : 2;
         EXPECT_TRUE(ends || slice.sample_count % (whole * DAPPLE_SAMPLE_BATCH) == 0)

@@ -82,7 +82,7 @@ class GaussianPixels {
         squares_(variances_.size()),
         batches_(variances_.size()) {}
 
-  void trace(const WorkGroup& group) {
+  void trace(const SampleGroup& group) {
     for (const PixelWork& work : group.work) {
       EXPECT_EQ(work.first_sample, batches_[work.pixel] * DAPPLE_SAMPLE_BATCH);
       for (std::uint32_t s = 0; s < group.samples; s += DAPPLE_SAMPLE_BATCH) {
@@ -127,15 +127,15 @@ Drawn draw(int width, int height, const RenderOptions& options) {
   const std::size_t count = static_cast<std::size_t>(width) * height;
   GaussianPixels pixels(rising_variances(count));
   SamplePlan plan(width, height, options);
-  const auto trace = [&](const std::vector<WorkGroup>& groups) {
-    for (const WorkGroup& group : groups) pixels.trace(group);
+  const auto trace = [&](const std::vector<SampleGroup>& groups) {
+    for (const SampleGroup& group : groups) pixels.trace(group);
   };
   trace(plan.pilot());
   if (plan.only_pilot_has_samples()) trace(plan.after_pilot({pixels.variances(width)}));
-  for (std::vector<WorkGroup> first; !(first = plan.least()).empty();) trace(first);
+  for (std::vector<SampleGroup> first; !(first = plan.least()).empty();) trace(first);
   Drawn drawn;
   for (; drawn.rounds < 30; ++drawn.rounds) {
-    const std::vector<WorkGroup> groups = plan.next({pixels.variances(width)});
+    const std::vector<SampleGroup> groups = plan.next({pixels.variances(width)});
     if (groups.empty()) break;
     trace(groups);
   }
@@ -235,18 +235,18 @@ TEST(PilotPixels, AreSomeHundredSquaresOfLargePicturesAndNoneOfSmallOnes) {
 TEST(SamplePlan, AfterThePilotAllPixelsGetEqualSamples) {
   RenderOptions options = by_rmse(0.1f);
   SamplePlan plan(128, 128, options);
-  const std::vector<WorkGroup> pilot = plan.pilot();
+  const std::vector<SampleGroup> pilot = plan.pilot();
   EXPECT_EQ(count_of(plan.samples(), 8), 1600u);
   EXPECT_EQ(count_of(plan.samples(), 0), 16384u - 1600u);
   ASSERT_TRUE(plan.only_pilot_has_samples());
   // With batches of variance 0.07 the squared error is 0.01 at 7 batches; the next power of two is
   // 8.
-  const std::vector<WorkGroup> all = plan.after_pilot({std::vector<float>(16384, 0.07f)});
+  const std::vector<SampleGroup> all = plan.after_pilot({std::vector<float>(16384, 0.07f)});
   EXPECT_EQ(count_of(plan.samples(), 8 * DAPPLE_SAMPLE_BATCH), 16384u);
   EXPECT_FALSE(plan.only_pilot_has_samples());
   GaussianPixels pixels(std::vector<float>(16384, 1.0f));
   for (const auto& groups : {pilot, all})
-    for (const WorkGroup& group : groups) pixels.trace(group);  // fails if samples are left out
+    for (const SampleGroup& group : groups) pixels.trace(group);  // fails if samples are left out
   EXPECT_TRUE(plan.least().empty());
 }
 
@@ -273,9 +273,9 @@ TEST(SamplePlan, PixelsThatLackManyNumbersOfSamplesAreFewGroups) {
   options.spp = 12000;
   SamplePlan plan(64, 64, options, samples);
   std::map<std::uint32_t, std::uint32_t> has;
-  const std::vector<WorkGroup> groups = plan.least();
+  const std::vector<SampleGroup> groups = plan.least();
   EXPECT_LE(groups.size(), 14u);
-  for (const WorkGroup& group : groups)
+  for (const SampleGroup& group : groups)
     for (const PixelWork& work : group.work) {
       const auto [at, is_first] = has.try_emplace(work.pixel, samples[work.pixel]);
       EXPECT_EQ(work.first_sample, at->second) << work.pixel;
@@ -321,7 +321,7 @@ TEST(SamplePlan, LargePicturesReachTheRmseInFewRounds) {
 
 TEST(SamplePlan, ListsEveryPixelOnceTileByTile) {
   SamplePlan plan(19, 11, RenderOptions{});
-  const WorkGroup all = plan.least().at(0);
+  const SampleGroup all = plan.least().at(0);
   ASSERT_EQ(all.work.size(), 19u * 11u);
   std::map<std::uint32_t, int> seen;
   for (const PixelWork& work : all.work) ++seen[work.pixel];

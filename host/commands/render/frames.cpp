@@ -86,6 +86,7 @@ std::vector<Frame> list_frames(const RenderArguments& a) {
   std::vector<Frame> frames;
   for (std::int64_t number = range.first; number <= range.last; number += range.step) {
     Frame frame = numbered(typed, number);
+    frame.number = number;
     frame.seconds = static_cast<double>(number) / frames_per_second(a);
     frame.title = fmt::format("frame {} of {}", frames.size() + 1, range.count());
     frames.push_back(std::move(frame));

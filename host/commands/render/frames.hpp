@@ -11,6 +11,7 @@ namespace dapple {
 
 struct Frame {
   std::optional<double> seconds;  ///< none: at rest
+  std::int64_t number = 0;        ///< of a sequence
   std::string title;              ///< "frame 3 of 24"; empty outside of a sequence
   std::string output, png, visits_png, deep, stats_json;  ///< empty: not written
 };

@@ -44,7 +44,8 @@ RenderControl to_control(const RenderArguments& a, ProgressBar& progress) {
   return control;
 }
 
-void write_pictures(const RenderResult& result, const Frame& frame, const ExrFormat& format,
+/// Notes of the result also tell names of layers that are not there.
+void write_pictures(RenderResult& result, const Frame& frame, const ExrFormat& format,
                     const PngOptions& png) {
   ExrFormat used = format;
   // To end soon: compression takes longer than all else.
@@ -54,6 +55,8 @@ void write_pictures(const RenderResult& result, const Frame& frame, const ExrFor
   if (!frame.deep.empty()) write_deep_exr(result.film, frame.deep);
   if (!frame.png.empty()) write_png(result.film, frame.png, "", png);
   if (!frame.visits_png.empty()) write_heat_map(result.film, frame.visits_png, "visits.nodes");
+  for (const std::string& name : half_layers_without_planes(result.film, format))
+    result.statistics.notes.push_back(fmt::format("--half {}: there is no such layer", name));
 }
 
 /// Prints one line for each note, at most twenty, and none that an earlier frame printed.
@@ -89,17 +92,21 @@ std::string files_text(const Frame& frame, bool interrupted) {
   return files.empty() ? last : fmt::format("{} and {}", fmt::join(files, ", "), last);
 }
 
-void print_summary(const RenderStatistics& s, const Frame& frame, bool interrupted) {
+/// `exposure`: of the preview, stops.
+void print_summary(const RenderStatistics& s, const Frame& frame, std::optional<float> exposure,
+                   bool interrupted) {
   const std::string files = files_text(frame, interrupted);
+  const bool is_shown = exposure && !frame.png.empty();
+  const std::string stops = is_shown ? fmt::format("; --exposure {:.2f}", *exposure) : "";
   if (frame.title.empty()) {
-    fmt::print("{}wrote {}\n", statistics_text(s), files);
+    fmt::print("{}wrote {}{}\n", statistics_text(s), files, stops);
     return;
   }
   fmt::print(
       "{}, at {:.3f} s: load {:.2f}, build {:.2f}, refit {:.2f}, trace {:.2f}, total {:.2f} s; "
-      "wrote {}\n",
+      "wrote {}{}\n",
       frame.title, *frame.seconds, s.seconds.load, s.seconds.build + s.seconds.prefilter,
-      s.seconds.refit, s.seconds.trace, s.seconds.total, files);
+      s.seconds.refit, s.seconds.trace, s.seconds.total, files, stops);
   std::fflush(stdout);
 }
 
@@ -163,6 +170,12 @@ void keep_choices(const RenderResult& result, bool has_dome, bool writes_png,
   options.keep_footprint = true;
 }
 
+std::vector<std::pair<std::string, std::string>> settings_of(const Shot& shot, const Frame& frame) {
+  std::vector<std::pair<std::string, std::string>> settings = shot.settings();
+  if (frame.seconds) settings.emplace_back("frame_seconds", fmt::format("{}", *frame.seconds));
+  return settings;
+}
+
 void run_render(const RenderArguments& a) {
   RenderOptions options = to_options(a);
   const ExrFormat format = to_format(a);
@@ -191,9 +204,8 @@ void run_render(const RenderArguments& a) {
     }
     const double load_seconds = since(start);
     control.part = is_part_path(frame.output) ? frame.output : "";
-    control.settings = shot.settings();
-    if (frame.seconds)
-      control.settings.emplace_back("frame_seconds", fmt::format("{}", *frame.seconds));
+    control.settings = settings_of(shot, frame);
+    if (a.animate_seed) options.seed = a.options.seed + static_cast<std::uint32_t>(frame.number);
     RenderResult result =
         render_frame(a, frame, shot, std::move(scene), renderer, options, control);
     slices_are_traced();
@@ -211,8 +223,6 @@ void run_render(const RenderArguments& a) {
     const auto writing = Clock::now();
     keep_choices(result, !a.dome.empty(), !frame.png.empty(), options, png);
     write_pictures(result, frame, format, png);
-    for (const std::string& name : half_layers_without_planes(result.film, format))
-      statistics.notes.push_back(fmt::format("--half {}: there is no such layer", name));
     statistics.seconds.write = since(writing);
     statistics.seconds.total = since(start);
     if (!frame.stats_json.empty()) write_statistics(statistics, frame.stats_json);
@@ -220,7 +230,7 @@ void run_render(const RenderArguments& a) {
       throw Error(ErrorKind::failed, result.checkpoint_failure + "; the image is written");
     if (!a.quiet) {
       notes.print(statistics.notes);
-      print_summary(statistics, frame, result.interrupted);
+      print_summary(statistics, frame, png.exposure, result.interrupted);
     }
     if (result.interrupted || interruption_code() != 0) break;
     start = Clock::now();

@@ -161,6 +161,8 @@ void add_motion_options(CLI::App& app, RenderArguments& a) {
                  "Render a sequence: A-B or A-B:STEP, frame n at n / fps seconds; write # "
                  "characters in output names for the frame number")
       ->excludes(&frame);
+  app.add_flag("--animate-seed", a.animate_seed,
+               "With --frames: other noise in each frame, whose number is added to --seed");
   app.add_option("--fps", a.fps, "Frames per second, for --frames, --shutter and motion vectors")
       ->default_str("24");
   CLI::Option& shutter = *app.add_option(
@@ -335,6 +337,7 @@ void check_effects(const RenderArguments& a, const RenderOptions& o) {
        "--estimator exact");
   need(o.max_spp != defaults.max_spp, "--max-spp", is_adaptive(o),
        "--target-rmse or --target-error");
+  need(a.animate_seed, "--animate-seed", !a.frames.empty(), "--frames");
   need(a.dome_rotation != 0, "--dome-rotation", !a.dome.empty(), "--dome");
 }
 

@@ -26,6 +26,7 @@ struct RenderArguments {
   std::vector<std::string> opacity;
   std::optional<double> frame;
   std::string frames;
+  bool animate_seed = false;
   std::optional<double> fps;  ///< default 24
   std::string shutter;
   std::optional<int> motion_samples;

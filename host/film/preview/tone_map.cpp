@@ -9,15 +9,43 @@
 namespace dapple {
 namespace {
 
-/// What a pixel shows where it is covered, and how much of it is.
+/// What a pixel shows where it is covered, how much of it is, and that weighted for the exposure.
 struct Seen {
-  float luminance, peak, weight;  ///< peak: of the brightest channel
+  float luminance, peak, alpha, weight;  ///< peak: of the brightest channel
+};
+
+/// The middle of the whole picture counts more, as in the light meters of cameras: a Gaussian of
+/// 0.18 of its width and height.
+class CentreWeights {
+ public:
+  explicit CentreWeights(const Film& film)
+      : window_(film.data_window), columns_(weights(film.width)), rows_(weights(film.height)) {}
+  [[nodiscard]] float of(std::size_t pixel) const {
+    const auto width = static_cast<std::size_t>(window_.width());
+    return columns_[pixel % width + static_cast<std::size_t>(window_.x0)] *
+           rows_[pixel / width + static_cast<std::size_t>(window_.y0)];
+  }
+
+ private:
+  static std::vector<float> weights(int size) {
+    constexpr float kDeviation = 0.18f;
+    std::vector<float> of(static_cast<std::size_t>(size));
+    for (std::size_t i = 0; i < of.size(); ++i) {
+      const float off = (static_cast<float>(i) + 0.5f) / static_cast<float>(size) - 0.5f;
+      of[i] = std::exp(-off * off / (2 * kDeviation * kDeviation));
+    }
+    return of;
+  }
+
+  PixelRect window_;
+  std::vector<float> columns_, rows_;
 };
 
 std::vector<Seen> seen_luminances(const Film& film) {
   const Plane *r = film.find("R"), *g = film.find("G"), *b = film.find("B"), *a = film.find("A");
   std::vector<Seen> seen;
   if (r == nullptr || g == nullptr || b == nullptr) return seen;
+  const CentreWeights centre(film);
   for (std::size_t p = 0; p < r->pixels.size(); ++p) {
     const float alpha = a == nullptr ? 1.0f : std::min(a->pixels[p], 1.0f);
     if (!(alpha > 0)) continue;
@@ -25,18 +53,19 @@ std::vector<Seen> seen_luminances(const Film& film) {
                                           double{alpha});
     const float peak = std::max({r->pixels[p], g->pixels[p], b->pixels[p]}) / alpha;
     if (std::isfinite(value) && std::isfinite(peak))
-      seen.push_back({std::max(value, 0.0f), std::max(peak, 0.0f), alpha});
+      seen.push_back({std::max(value, 0.0f), std::max(peak, 0.0f), alpha, alpha * centre.of(p)});
   }
   return seen;
 }
 
-/// What a hundredth of what is seen exceeds in one channel.
-double bright_peak(std::vector<Seen> seen, double weight) {
+/// What a hundredth of what is seen exceeds in one channel, wherever it is.
+double bright_peak(std::vector<Seen> seen) {
   std::sort(seen.begin(), seen.end(), [](const Seen& a, const Seen& b) { return a.peak > b.peak; });
-  double brighter = 0;
+  double covered = 0, brighter = 0;
+  for (const Seen& pixel : seen) covered += double{pixel.alpha};
   for (const Seen& pixel : seen) {
-    brighter += double{pixel.weight};
-    if (brighter > 0.01 * weight) return double{pixel.peak};
+    brighter += double{pixel.alpha};
+    if (brighter > 0.01 * covered) return double{pixel.peak};
   }
   return 0;
 }
@@ -47,13 +76,14 @@ double mean_albedo(const Film& film) {
   const Plane *r = film.find("albedo.R"), *g = film.find("albedo.G"), *b = film.find("albedo.B");
   const Plane* a = film.find("A");
   if (r == nullptr || g == nullptr || b == nullptr || a == nullptr) return kMiddleGrey;
+  const CentreWeights centre(film);
   double sum = 0, weight = 0;
   for (std::size_t p = 0; p < r->pixels.size(); ++p) {
     const double alpha = double{a->pixels[p]};
     const double value = luminance(V3f(r->pixels[p], g->pixels[p], b->pixels[p]));
     if (!(alpha > 0) || !std::isfinite(value)) continue;
-    sum += alpha * value;
-    weight += alpha;
+    sum += alpha * value * double{centre.of(p)};
+    weight += alpha * double{centre.of(p)};
   }
   return weight > 0 ? std::clamp(sum / weight, 0.01, 1.0) : kMiddleGrey;
 }
@@ -71,7 +101,7 @@ float automatic_exposure(const Film& film) {
   if (!(sum > 0)) return 1;
   const double mean = sum / weight;
   const double shown = kMiddle * std::sqrt(mean_albedo(film) / kMiddleGrey);
-  const double scale = std::min(shown / mean, 1.0 / std::max(bright_peak(seen, weight), mean));
+  const double scale = std::min(shown / mean, 1.0 / std::max(bright_peak(seen), mean));
   return std::isfinite(static_cast<float>(scale)) ? static_cast<float>(scale) : 1;
 }
 

@@ -6,10 +6,10 @@
 
 namespace dapple {
 
-/// The factor that scales RGBA to a medium brightness. The mean luminance of what is seen becomes
-/// 0.35 sqrt(2 albedo), halfway (in stops) between what makes every subject a middle grey and what
-/// shows it as dark as it is; but at most a hundredth of it is brighter than white. 1 where nothing
-/// is seen.
+/// The factor that scales RGBA to a medium brightness. The mean luminance of what is seen, in the
+/// middle above all, becomes 0.35 sqrt(2 albedo), halfway (in stops) between what makes every
+/// subject a middle grey and what shows it as dark as it is; but at most a hundredth of it is
+/// brighter than white. 1 where nothing is seen.
 float automatic_exposure(const Film& film);
 
 /// Compresses what is brighter than 0.76, and takes its saturation away, so that highlights become

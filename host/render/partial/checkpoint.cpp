@@ -74,7 +74,7 @@ std::vector<Piece> finished_pieces(const Checkpoint& checkpoint, const TraceStat
 
 json header(const Checkpoint& checkpoint, const TraceState& state, const Round& round) {
   json groups = json::array();
-  for (const WorkGroup& group : round.groups) groups.push_back(group.samples);
+  for (const SampleGroup& group : round.groups) groups.push_back(group.samples);
   return {{"options", settings_json(checkpoint.options)},
           {"content", settings_json(checkpoint.content)},
           {"footprint_spp", checkpoint.footprint_spp},
@@ -164,7 +164,7 @@ Checkpoint read_as(const std::string& name, const std::string& path, PartContent
 }
 
 bool fits(const Round& round, std::uint32_t slice_samples, std::size_t pixels) {
-  for (const WorkGroup& group : round.groups) {
+  for (const SampleGroup& group : round.groups) {
     if (group.samples < 1 || group.samples > kMaxSamples) return false;
     if (group.work.empty() || group.work.size() > pixels) return false;
     for (const PixelWork& work : group.work)
@@ -195,7 +195,7 @@ void write_checkpoint(const std::string& path, const Checkpoint& checkpoint,
   add(as_section(state.sum_values()));
   add(as_section(state.square_values()));
   add(as_section(state.samples));
-  for (const WorkGroup& group : round.groups) add(as_section(group.work));
+  for (const SampleGroup& group : round.groups) add(as_section(group.work));
   if (!state.mattes.empty()) add(as_section(state.mattes));
   if (!state.motion.empty()) add(as_section(state.motion.values()));
   std::vector<Section> sections{as_section(about)};

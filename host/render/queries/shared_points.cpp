@@ -13,11 +13,11 @@
 namespace dapple {
 namespace {
 
-/// Rays start above a plane by 64 roundings of the coordinates along its normal, since callers
-/// rounded theirs, or by 8 of the terms that these are the sums of, which may be larger; and by 16
-/// of the largest coordinate, as above camera hits (surface_point.clh), where the plane is not
-/// known or matrices carry rays into instances.
-constexpr float kAlongNormal = 3.8e-6f, kInAllDirections = 9.5e-7f;
+/// Rays start above a plane by the roundings of the coordinates along its normal, or of the terms
+/// that these are the sums of, which may be larger; and by 16 roundings of the largest coordinate,
+/// as above camera hits (surface_point.clh), where the plane is not known or matrices carry rays
+/// into instances.
+constexpr float kInAllDirections = 9.5e-7f;
 
 SurfacePoint surface_point(const V3f& position, const V3f& normal, const V3f& plane,
                            const V3f& reach, std::size_t index, bool is_bounded) {
@@ -30,7 +30,7 @@ SurfacePoint surface_point(const V3f& position, const V3f& normal, const V3f& pl
     along += term * std::fabs(plane[axis]);
     largest = std::max(largest, term);
   }
-  point.offset = along * kAlongNormal + (is_bounded ? 0.0f : largest * kInAllDirections);
+  point.offset = along * kCallersRoundings + (is_bounded ? 0.0f : largest * kInAllDirections);
   point.pixel = static_cast<uint>(index);
   return point;
 }
@@ -59,7 +59,7 @@ V3f reach_in_world(const V3f& reach, const M44f& to_world) {
 float offset_above_plane(const V3f& reach, const V3f& normal) {
   float along = 0;
   for (int axis = 0; axis < 3; ++axis) along += reach[axis] * std::fabs(normal[axis]);
-  return along * kTermsOfReach * kAlongNormal;
+  return along * kTermsOfReach * kCallersRoundings;
 }
 
 SharedPoints::SharedPoints(DeviceContext& context, const QueryPoints& points,

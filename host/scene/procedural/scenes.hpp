@@ -32,6 +32,8 @@ Scene make_cube_scene(const ProceduralParameters& parameters);
 Scene make_greys_scene(const ProceduralParameters& parameters);
 Scene make_sieve_scene(const ProceduralParameters& parameters);
 
+// What they have in common (parts.cpp).
+
 /// Makes a material of alpha mode BLEND; `opacity` is in [0, 1].
 Material blend_material(const std::string& name, float opacity);
 Material opaque_material(const std::string& name);

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "dapple/points.hpp"
+#include "dapple/scene.hpp"
 
 namespace dapple {
 namespace {

@@ -1,10 +1,10 @@
 /* The shading pass for GPUs: each work-item shades every sixteenth sample of a pixel. In and out: as
-   film/shading.cl. A work-group has four pixels, and adds up what its items found. */
+   shading/shade_points.cl. A work-group has four pixels, and adds up what its items found. */
 #include "film/film.clh"
-#include "film/shading.clh"
+#include "shading/shading.clh"
 #include "camera/medium_surface.clh"
-#include "scalar/smooth_triangle.clh"
-#include "scalar/surface_color.clh"
+#include "shading/smooth_triangle_scalar.clh"
+#include "shading/surface_color_scalar.clh"
 
 #define DAPPLE_SHADING_PIXELS 4u /* of a work-group */
 #define DAPPLE_SHADING_GROUP (DAPPLE_SHADING_ITEMS * DAPPLE_SHADING_PIXELS)

@@ -1,4 +1,5 @@
-// Where a lens focuses in a sequence whose camera brings no focus distance.
+// Options of sequences: where a lens focuses without a distance of its own, and other noise in each
+// frame.
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
 #include <ImfStringAttribute.h>
@@ -6,6 +7,7 @@
 
 #include <fstream>
 
+#include "dapple/film.hpp"
 #include "support/files/gltf_builder.hpp"
 #include "support/programs/program_run.hpp"
 
@@ -14,7 +16,7 @@ namespace {
 
 using namespace program_test;
 
-class FramesFocus : public ProgramRun {
+class FramesOptions : public ProgramRun {
  protected:
   /// Writes rise.glb: the triangle rises towards a camera that looks down on it.
   void write_rise() const {
@@ -40,7 +42,7 @@ class FramesFocus : public ProgramRun {
   }
 };
 
-TEST_F(FramesFocus, ASequenceKeepsTheFocusOfItsFirstFrame) {
+TEST_F(FramesOptions, ASequenceKeepsTheFocusOfItsFirstFrame) {
   write_rise();
   ASSERT_EQ(dapple("render rise.glb --width 8 --height 8 --spp 2 --frames 0-1 --fps 1 --aperture "
                    "0.1 --passes ao -o a.#.exr")
@@ -48,6 +50,24 @@ TEST_F(FramesFocus, ASequenceKeepsTheFocusOfItsFirstFrame) {
             0);
   EXPECT_GT(focus_distance("a.0.exr"), 1);
   EXPECT_EQ(focus_distance("a.0.exr"), focus_distance("a.1.exr"));
+}
+
+TEST_F(FramesOptions, FramesHaveTheSameNoiseUnlessTheSeedIsAnimated) {
+  const std::string scene =
+      "render 'scene:tree?leaves=200' --width 24 --height 24 --spp 2 --passes ao --report-bias 0 "
+      "--max-bias 0 -q ";
+  ASSERT_EQ(dapple(scene + "--frames 3-4 -o still.#.exr").code, 0);
+  ASSERT_EQ(dapple(scene + "--frames 3-4 --animate-seed --seed 5 -o noisy.#.exr").code, 0);
+  ASSERT_EQ(dapple(scene + "--frames 4-4 --animate-seed --seed 5 -o alone.#.exr").code, 0);
+  ASSERT_EQ(dapple(scene + "--frames 9-9 --seed 0 -o other.#.exr").code, 0);
+  const auto ao = [&](const char* name) { return read_exr(path(name)).find("ao.R")->pixels; };
+  EXPECT_EQ(ao("still.3.exr"), ao("still.4.exr"));
+  EXPECT_NE(ao("noisy.3.exr"), ao("noisy.4.exr"));
+  EXPECT_EQ(ao("noisy.4.exr"), ao("alone.4.exr"));
+  EXPECT_EQ(ao("other.9.exr"), ao("still.3.exr"));
+  const Outcome still = dapple(scene + "--animate-seed -o a.exr");
+  EXPECT_EQ(still.code, 2);
+  EXPECT_NE(still.err.find("--animate-seed needs --frames"), std::string::npos) << still.err;
 }
 
 }  // namespace

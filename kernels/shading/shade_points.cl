@@ -2,10 +2,10 @@
    that the camera pass stored with their triangles, after resolve_surface. Out: points moved to
    where their rays start; sums of normals and albedo in the film. One work-item for each pixel, or
    for each record of samples where nothing is added to the film. */
-#include "camera/shading_normal.clh"
-#include "camera/surface_color.clh"
+#include "shading/shading_normal.clh"
+#include "shading/surface_color.clh"
 #include "film/film.clh"
-#include "film/shading.clh"
+#include "shading/shading.clh"
 
 /* What a group of points hit, and lanes of it. */
 typedef struct HitGroup {
