@@ -216,8 +216,11 @@ std::vector<NodeAccuracyRow> measure_nodes(const Scene& scene, const SceneBvh& b
   std::vector<NodeAccuracyRow> rows;
   for (const std::size_t size : kSizes) {
     std::vector<Subtree> candidates;
-    std::copy_if(all.begin(), all.end(), std::back_inserter(candidates),
-                 [&](const Subtree& s) { return s.triangles >= size && s.triangles < 2 * size; });
+    // Rays do not stop at walls, which store no depth.
+    std::copy_if(all.begin(), all.end(), std::back_inserter(candidates), [&](const Subtree& s) {
+      return s.triangles >= size && s.triangles < 2 * size &&
+             !bvh_is_wall(bvh.nodes[s.node].depth, s.slot);
+    });
     if (!candidates.empty()) rows.push_back(judge.judge(std::move(candidates), size));
   }
   return rows;

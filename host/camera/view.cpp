@@ -171,6 +171,10 @@ void check_camera(const Camera& camera) {
       throw Error(ErrorKind::input, fmt::format("camera \"{:.100}\" has the {} {}; it must be {}",
                                                 camera.name, what, value, range));
   };
+  const float volume = camera.to_world.determinant();
+  that(std::isfinite(volume) && volume != 0, "determinant", volume, "finite and not 0");
+  that(camera.kind == Camera::Kind::perspective || camera.kind == Camera::Kind::orthographic,
+       "kind", static_cast<float>(camera.kind), "perspective or orthographic");
   const char *finite = "finite and not 0", *positive = "finite, 0 or more";
   if (camera.kind == Camera::Kind::perspective)
     that(camera.fov_y > 0 && camera.fov_y < std::numbers::pi_v<float>, "field of view",

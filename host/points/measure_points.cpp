@@ -300,8 +300,8 @@ void validate(const PointOptions& options) {
   check_range("--rings", options.rings, 0, 90);
   check_ray_options(options);
   check_range("--max-bias", options.max_bias.value_or(0), 0, 1);
-  check_range("--periodic", double{options.period_x}, 0, 1e30);
-  check_range("--periodic", double{options.period_z}, 0, 1e30);
+  check_range("--periodic", options.period_x, 0, 1e30f);
+  check_range("--periodic", options.period_z, 0, 1e30f);
   if ((options.period_x > 0) != (options.period_z > 0))
     throw Error(ErrorKind::usage, "--periodic needs two periods above 0");
 }

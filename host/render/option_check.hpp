@@ -22,7 +22,7 @@ template <class Options>
 void check_ray_options(const Options& options) {
   check_range("--footprint", double{options.footprint}, 0, 1e6);
   check_range("--report-bias", double{options.report_bias}, 0, 1);
-  check_range("--ao-distance", double{options.distance}, 0, 1e30);
+  check_range("--ao-distance", options.distance, 0, 1e30f);
   check_range("--ao-falloff", double{options.falloff}, 0, 100);
   if (options.falloff > 0 && !(options.distance > 0))
     throw Error(ErrorKind::usage, "--ao-falloff needs --ao-distance");

@@ -68,7 +68,7 @@ struct SceneBvh {
 void prepare_bvh_cache(const std::string& folder);
 
 /// Builds the BVH of a scene, which must have a triangle or segment that can be hit. Takes time
-/// linear in the triangles, in parallel; the bits do not depend on the number of threads. With a
+/// n log n of n triangles, their opacities linear, in parallel; the bits do not depend on the number of threads. With a
 /// `cache_folder`, objects that were built before are read from it, with the same bits, and others
 /// are written to it; damaged files and those of other versions are replaced. Throws Error failed
 /// if the BVH is too deep for the kernels' stack or too large for 32-bit indices.
@@ -85,7 +85,7 @@ struct BvhUpdate {
   std::size_t objects_refitted = 0;  ///< kept their BVH, with new boxes
   std::size_t objects_rebuilt = 0;   ///< changed in more than positions, or became too costly
   double seconds = 0;                ///< wall time
-  double cost_ratio = 1;  ///< largest SAH cost after refitting, relative to that after building
+  double cost_ratio = 1;  ///< largest traversal cost (SAH) after refitting over that after building
   bool is_new = false;    ///< all arrays were replaced
   /// If not is_new: the ranges of nodes and triangle blocks that changed.
   std::vector<IndexRange> nodes, blocks;

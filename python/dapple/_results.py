@@ -152,9 +152,9 @@ class Bake:
 
 
 def bake_of(
-    meshes: Iterable[Mapping[str, FloatArray]],
+    meshes: Iterable[Iterable[tuple[str, FloatArray]]],
     instance_ao: FloatArray,
-    lights: Mapping[str, FloatArray],
+    lights: Iterable[tuple[str, FloatArray]],
     texture: tuple[Any, ...] | None,
     notes: list[str],
     bias: Mapping[str, tuple[float, float, float, float, float]],

@@ -122,7 +122,7 @@ TEST_F(GoodValues, OfRenderMakeAPicture) {
   run("render" + kTree + kSaved + "-o d.exr --checkpoint d.ckpt --checkpoint-every 5m");
   run("render" + kTree + kSaved + "-o h.exr --resume d.ckpt");
   run("render" + kTree +
-      "-o 'f.#.exr' --frames 1-2 --fps 30 --passes ao,motion,visits "
+      "-o 'f.#.exr' --frames 1-2 --animate-seed --fps 30 --passes ao,motion,visits "
       "--target-rmse 0.1");
   run("render" + kStage +
       "-o e.exr --deep e_deep.exr --frame 0.5 --fps 12 --shutter 0,0.5 "
@@ -139,7 +139,7 @@ TEST_F(GoodValues, OfPlanAreThoseOfRenderButForWhatItRefuses) {
   for (const std::string& options : kPictures) run("plan" + kTree + options);
   run("plan" + kTree +
       "--lights lights.json --checkpoint d.ckpt --checkpoint-every 5m "
-      "--frames 1-2 --fps 30");
+      "--frames 1-2 --animate-seed --fps 30");
   run("plan" + kStage + "--frame 0.5");
   std::set<std::string> help;
   for (const Option& option : options_in(dapple("plan --help").out)) help.insert(option.flag);

@@ -163,6 +163,12 @@ TEST(SceneCheck, CamerasThatSeeNothingAreRefused) {
          c.half_height = 0;
        },
        "camera \"\" has the half height 0; it must be finite and not 0"},
+      {[&](Camera& c) { c.to_world[0][0] = nan; },
+       "camera \"\" has the determinant nan; it must be finite and not 0"},
+      {[](Camera& c) { c.to_world[0][0] = 0; },
+       "camera \"\" has the determinant 0; it must be finite and not 0"},
+      {[](Camera& c) { c.kind = static_cast<Camera::Kind>(7); },
+       "camera \"\" has the kind 7; it must be perspective or orthographic"},
       {[](Camera& c) { c.lens_radius = -1; },
        "camera \"\" has the lens radius -1; it must be finite, 0 or more"},
       {[&](Camera& c) { c.focus_distance = nan; },

@@ -11,6 +11,7 @@
 #include "bvh/build/top_level.hpp"
 #include "bvh/refit/refit_object.hpp"
 #include "bvh/refit/texel_sizes.hpp"
+#include "bvh/refit/traversal_cost.hpp"
 #include "bvh/storage/object_key.hpp"
 #include "dapple/bvh.hpp"
 #include "scene/check/scene_check.hpp"
@@ -18,7 +19,7 @@
 namespace dapple {
 namespace {
 
-/// An object is rebuilt if its SAH cost exceeds that of its last build by this factor:
+/// An object is rebuilt if its traversal_cost() exceeds that of its last build by this factor:
 /// experiment 107.
 constexpr double kWorstCost = 1.5;
 
@@ -53,7 +54,7 @@ struct UpdatableBvh::State {
   std::vector<ObjectSummary> objects;
   std::vector<ObjectOffsets> offsets;
   std::vector<RefitRecord> records;  ///< one for each mesh; without nodes: there is no record
-  std::vector<double> built_costs;   ///< sah_cost of each object at its last build
+  std::vector<double> built_costs;   ///< of each object with a record, at its last build
   std::vector<MeshKey> keys;
   std::vector<Instance> instances;
 
@@ -86,17 +87,17 @@ void UpdatableBvh::State::build(const Scene& scene, Motion motion,
   bvh = std::move(built.bvh);
   objects = std::move(built.objects);
   offsets = std::move(built.offsets);
-  for (std::size_t m = 0; m < meshes; ++m) built_costs[m] = objects[m].sah_cost;
 }
 
 /// Builds all objects except those that are kept.
 void UpdatableBvh::State::rebuild(const Scene& scene, const std::vector<bool>& is_kept) {
   std::vector<FinishedObject> finished =
       build_refittable(scene, separated(is_kept), is_kept, records, bvh.statistics);
-  for (std::size_t m = 0; m < is_kept.size(); ++m) {
-    if (!is_kept[m]) built_costs[m] = finished[m].sah_cost;
-  }
   put_together(scene, std::move(finished));
+  tbb::parallel_for(std::size_t{0}, is_kept.size(), [&](std::size_t m) {
+    if (!is_kept[m] && can_refit(scene, m))
+      built_costs[m] = traversal_cost(arrays_of(m).nodes, scene.meshes[m]);
+  });
 }
 
 /// Returns copies of the objects that are kept; the others are empty.
@@ -181,7 +182,8 @@ void UpdatableBvh::State::update(const Scene& scene, const std::vector<MeshKey>&
   const std::vector<std::size_t> moved = sort_objects(scene, now, is_kept);
   refit(scene, moved);
   for (const std::size_t m : moved) {
-    const double ratio = built_costs[m] > 0 ? objects[m].sah_cost / built_costs[m] : 1;
+    const double cost = traversal_cost(arrays_of(m).nodes, scene.meshes[m]);
+    const double ratio = built_costs[m] > 0 ? cost / built_costs[m] : 1;
     update.cost_ratio = std::max(update.cost_ratio, ratio);
     is_kept[m] = ratio <= kWorstCost;
     update.objects_refitted += is_kept[m];

@@ -93,6 +93,7 @@ void check_uploaded(const DeviceScene& scene) {
 
 DeviceScene upload(const Device& device, const Scene& scene, const SceneBvh& bvh,
                    const UploadOptions& options) {
+  check_scene(scene);
   auto buffers = std::make_shared<DeviceBuffers>(device);
   if (!bvh.textured.empty()) pack_materials(scene, buffers->material_records, buffers->texel_data);
   pack_lights(scene, buffers->light_records, buffers->emitter_triangles);
@@ -185,6 +186,7 @@ BvhUpdate update_uploaded(const Device& device, DeviceScene& on_device, Updatabl
 
 BvhUpdate update(const Device& device, DeviceScene& on_device, UpdatableBvh& bvh,
                  const Scene& moved, const UploadOptions& options) {
+  check_lights(moved);
   if (!on_device.buffers) {
     BvhUpdate all = bvh.update(moved);
     on_device = upload(device, moved, bvh.bvh(), options);

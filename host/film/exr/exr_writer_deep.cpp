@@ -82,7 +82,11 @@ void write_deep_exr(const Film& film, const std::string& path) {
   PendingFile file(path);
   const auto pixels =
       static_cast<std::size_t>(film.data_window.width()) * film.data_window.height();
-  if (film.deep.first.size() != pixels + 1) file.fail("the film has no depths");
+  const std::vector<std::size_t>& first = film.deep.first;
+  if (first.size() != pixels + 1) file.fail("the film has no depths");
+  if (first.front() != 0 || first.back() != film.deep.samples.size() ||
+      !std::is_sorted(first.begin(), first.end()))
+    file.fail("the depths of its pixels do not follow each other");
   try {
     encode(film, file);
     file.close();

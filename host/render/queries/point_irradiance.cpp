@@ -182,6 +182,7 @@ std::vector<PointIrradiance> point_irradiance(const Device& device, const Device
     queues.points = {};  // `batch` is destroyed here, and the buffer refers to its memory
   }
   context.finish();
+  if (control.progress) control.progress(1);
   return result;
 }
 

@@ -93,7 +93,7 @@ void occlusion_in_passes(DeviceContext& context, const Queues& queues, const Dev
 void check(const OcclusionOptions& options) {
   check_range("occlusion: rays", options.rays, 1, 1 << 20);
   check_range("occlusion: footprint", double{options.footprint}, 0, 1e6);
-  check_range("occlusion: distance", double{options.distance}, 0, 1e30);
+  check_range("occlusion: distance", options.distance, 0, 1e30f);
   check_range("occlusion: falloff", double{options.falloff}, 0, 100);
   if (options.falloff > 0 && !(options.distance > 0))
     throw Error(ErrorKind::usage, "occlusion: falloff needs a distance");
@@ -143,6 +143,7 @@ PointOcclusion point_occlusion(const Device& device, const DeviceScene& scene,
     queues.points = {};  // `batch` is destroyed here, and the buffer refers to its memory
   }
   context.finish();
+  if (control.progress) control.progress(1);
   return result;
 }
 

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "dapple/error.hpp"
 #include "dapple/render.hpp"
@@ -21,6 +22,8 @@ void check_points(std::span<const Ray> rays, std::size_t rays_per_point) {
                                               rays.size(), rays_per_point));
   }
   for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (!std::all_of(rays[i].origin, rays[i].origin + 3, [](float x) { return std::isfinite(x); }))
+      throw Error(ErrorKind::usage, fmt::format("trace: ray {} has no finite origin", i));
     const Ray& first = rays[i - i % rays_per_point];
     if (std::equal(first.origin, first.origin + 3, rays[i].origin) && first.light == rays[i].light)
       continue;
@@ -37,6 +40,9 @@ std::vector<Occlusion> trace(const Device& device, const DeviceScene& scene,
                              std::span<const Ray> rays, Estimator estimator, float footprint,
                              std::size_t rays_per_point) {
   check_points(rays, rays_per_point);
+  if (!(footprint >= 0 && footprint <= 1e6f))
+    throw Error(ErrorKind::usage,
+                fmt::format("trace: footprint is {:g}; it must be from 0 to 1e+06", footprint));
   check_uploaded(scene);
   DeviceContext& context = device.context();
   // Rays of a point packet share a light; with several lights each ray is traced singly.

@@ -77,6 +77,9 @@ void check_mesh(const Scene& scene, std::size_t number) {
   check.length("uvs", mesh.uvs, vertices);
   check.length("colors", mesh.colors, vertices);
   check.length("vertex_alpha", mesh.vertex_alpha, vertices);
+  check.that(std::all_of(mesh.vertex_alpha.begin(), mesh.vertex_alpha.end(),
+                         [](float alpha) { return std::isfinite(alpha); }),
+             "has a vertex_alpha that is not finite");
   check.length("objects", mesh.objects, mesh.materials.size());
   check_indices(check, "object", mesh.objects, scene.objects.size());
 }
@@ -172,9 +175,13 @@ void check_light(const Scene& scene, std::size_t number) {
 
 }  // namespace
 
+void check_lights(const Scene& scene) {
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) check_light(scene, i);
+}
+
 void check_scene(const Scene& scene) {
   check_geometry(scene);
-  for (std::size_t i = 0; i < scene.lights.size(); ++i) check_light(scene, i);
+  check_lights(scene);
 }
 
 void check_geometry(const Scene& scene) {

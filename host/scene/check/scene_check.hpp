@@ -17,7 +17,8 @@ inline std::string source_name(const Scene& scene) {
 /// a mesh or an image have wrong lengths, or a light has numbers that no light has.
 void check_scene(const Scene& scene);
 
-/// The same without lights, which a BVH does not depend on.
+/// The same without lights, which a BVH does not depend on, and of lights alone.
 void check_geometry(const Scene& scene);
+void check_lights(const Scene& scene);
 
 }  // namespace dapple

@@ -140,6 +140,7 @@ Light dome_light(const std::string& name, const std::string& path) {
 }
 
 void finalize_domes(Scene& scene) {
+  check_lights(scene);
   for (Light& light : scene.lights) {
     if (light.kind != LightKind::dome || !light.environment) continue;
     const Environment& image = *light.environment;
