@@ -291,6 +291,9 @@ void validate(const BakeOptions& options) {
   check_range("--margin", options.margin, 0, 1024);
   check_range("--target-error", double{options.target_error}, 0, 1);
   check_ray_options(options);
+  check_enumerator("--sides", options.sides, BakeSides::mean);
+  check_enumerator("--instances", options.placement, BakeInstances::alone);
+  check_enumerator("--normals", options.normals, Normals::geometric);
   check_range("--max-bias", double{options.max_bias}, 0, 1);
   if (options.light && options.placement == BakeInstances::alone)
     throw Error(ErrorKind::usage,

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "dapple/error.hpp"
+#include "dapple/options.hpp"
 
 namespace dapple {
 
@@ -17,9 +18,17 @@ inline void check_range(std::string_view name, double value, double low, double 
                                             value, low, high));
 }
 
+/// Throws Error usage if an enumeration, whose last enumerator is `last`, has no such value.
+template <class Enumeration>
+void check_enumerator(std::string_view name, Enumeration value, Enumeration last) {
+  if (static_cast<int>(value) <= static_cast<int>(last)) return;
+  throw Error(ErrorKind::usage, fmt::format("{} has no value {}", name, static_cast<int>(value)));
+}
+
 /// The options of rays that bakes and points have by the same names.
 template <class Options>
 void check_ray_options(const Options& options) {
+  check_enumerator("--estimator", options.estimator, Estimator::prefiltered);
   check_range("--footprint", double{options.footprint}, 0, 1e6);
   check_range("--report-bias", double{options.report_bias}, 0, 1);
   check_range("--ao-distance", options.distance, 0, 1e30f);

@@ -162,6 +162,9 @@ void validate(const RenderOptions& options) {
   check_range("--width", options.width, 1, 65535);
   check_range("--height", options.height, 1, 65535);
   check_range("--spp", options.spp, 1, 1 << 20);
+  check_enumerator("--estimator", options.estimator, Estimator::prefiltered);
+  check_enumerator("--normals", options.normals, Normals::geometric);
+  check_enumerator("--packets", options.packets, Packets::scalar);
   check_range("footprint_spp", options.footprint_spp, 0, 1 << 20);
   check_range("footprint_ao_rays", options.footprint_ao_rays, 0, 4096);
   check_targets(options);

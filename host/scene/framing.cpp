@@ -2,7 +2,6 @@
 #include <Imath/ImathBoxAlgo.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <numbers>
 
@@ -110,7 +109,8 @@ Camera look_at(V3f from, V3f at, V3f up, float fov_y) {
 
 Camera frame_scene(const Scene& scene, float aspect, float fov_y) {
   require_field_of_view(fov_y);
-  assert(aspect > 0);
+  if (!(aspect > 0) || !std::isfinite(aspect))
+    throw Error(ErrorKind::usage, "camera: the aspect ratio must be above 0, and finite");
   const V3f size = bounds_or_unit_box(scene).size();
   const V3f front = size.z > kElongation * size.x ? V3f(1, 0, 0) : V3f(0, 0, 1);
   Camera camera = look_at(front + V3f(0, kFrameElevation, 0), {0, 0, 0}, {0, 1, 0}, fov_y);

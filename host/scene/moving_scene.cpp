@@ -8,6 +8,7 @@
 #include "dapple/error.hpp"
 #include "scene/gltf/moving_gltf.hpp"
 #include "scene/hair_file.hpp"
+#include "scene/procedural/scenes.hpp"
 #include "scene/unused_options.hpp"
 
 namespace dapple {
@@ -32,7 +33,9 @@ class GltfSource : public MovingScene::Source {
 class ProceduralSource : public MovingScene::Source {
  public:
   ProceduralSource(std::string name, SceneOptions options)
-      : name_(std::move(name)), options_(std::move(options)) {}
+      : name_(std::move(name)), options_(std::move(options)) {
+    check_procedural(name_);
+  }
   [[nodiscard]] Scene at(std::optional<double> seconds) const override {
     Scene scene = make_procedural(name_, seconds);
     warn_of_no_lines(name_, options_, scene);

@@ -34,13 +34,13 @@ enum class BakeInstances : std::uint8_t {
 };
 
 struct BakeOptions {
-  bool vertices = true;                      ///< bake values at vertices
-  bool instances = false;                    ///< bake a value for each instance
-  bool texture = false;                      ///< bake a texture that all meshes share
-  bool bent = false;                         ///< bent normals too, at vertices and in the texture
-  bool light = false;                        ///< irradiance of each light too
-  std::optional<std::vector<Light>> lights;  ///< in place of the scene's; none: those
-  int light_rays = 8;                        ///< per light, for each sample and side, [1, 4096]
+  bool vertices = true;    ///< bake values at vertices
+  bool instances = false;  ///< bake a value for each instance
+  bool texture = false;    ///< bake a texture that all meshes share
+  bool bent = false;       ///< bent normals too, at vertices and in the texture
+  bool light = false;      ///< irradiance of each light too
+  std::optional<std::vector<Light>> lights = {};  ///< in place of the scene's; none: those
+  int light_rays = 8;  ///< per light, for each sample and side, [1, 4096]
   /// Standard error of each AO value to aim at, [0,1], and of the brightness of all lights
   /// together, relative to the largest unoccluded one; 0: `rays` for every value.
   float target_error = 0.04f;
@@ -68,11 +68,11 @@ struct BakeOptions {
   int margin = 16;  ///< texels by which values extend over the border of charts, [0, 1024]
   /// Texture coordinates to use, for each mesh and vertex, in [0,1] up to rounding errors of 1e-5;
   /// empty: a layout of our own.
-  std::vector<std::vector<V2f>> texture_uvs;
+  std::vector<std::vector<V2f>> texture_uvs = {};
   std::uint32_t seed = 0;
-  bool ground = false;                                 ///< an opaque plane under the scene occludes
-  std::vector<std::pair<std::string, float>> opacity;  ///< of materials by name, [0,1]
-  std::string device, kernel_dir, cache;               ///< as in RenderOptions
+  bool ground = false;  ///< an opaque plane under the scene occludes
+  std::vector<std::pair<std::string, float>> opacity = {};  ///< of materials by name, [0,1]
+  std::string device = {}, kernel_dir = {}, cache = {};     ///< as in RenderOptions
 };
 
 /// Throws Error usage, naming the command line's flag, when a value is out of range.

@@ -71,7 +71,7 @@ struct ExrFormat {
   bool multipart = false;                            ///< a part for each layer
   /// Layers of 16-bit floats ("ao", "light" for all lights), or "all". Z, P, motion, samples and
   /// Cryptomattes always have 32 bits. Finite values beyond 65504 become 65504.
-  std::vector<std::string> half;
+  std::vector<std::string> half = {};
 };
 
 /// Throws Error usage, which names the command line's flag, for a layer that cannot be half and for
@@ -99,7 +99,7 @@ struct PngOptions {
     none,   ///< the file has an alpha channel
     color,  ///< `color`
   };
-  std::optional<float> exposure;  ///< in stops: values times 2^exposure; none: automatic
+  std::optional<float> exposure = {};  ///< in stops: values times 2^exposure; none: automatic
   Background background = Background::sky;
   V3f color{0, 0, 0};  ///< linear, [0,1]; on the display, without exposure
 };

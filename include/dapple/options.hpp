@@ -115,7 +115,7 @@ struct RenderOptions {
   /// take `footprint`. None: kDefaultMaxBias in a picture of kMinPilotSamples samples and more,
   /// where a small part of the rays is enough to tell that `footprint` has more. So give 0 to keep
   /// `footprint`, as for frames that must be alike.
-  std::optional<float> max_bias;
+  std::optional<float> max_bias = {};
   /// Take `footprint` whatever its bias, as later frames of a sequence do. With a target its bias
   /// is still measured.
   bool keep_footprint = false;
@@ -138,22 +138,23 @@ struct RenderOptions {
   /// Radiance of a uniform sky that is multiplied by AO in RGBA, [0, 1e30]; none: 1 without lights,
   /// 0 with a dome, otherwise a tenth of what the lights make of bright white surfaces: of the 90th
   /// percentile, over pixels whose surfaces face a light, of irradiance without occlusion.
-  std::optional<float> ambient;
-  std::string camera;  ///< by name; empty: the first, or one that shows it all
-  std::optional<LookAt> look;
-  float fov_degrees = 0.0f;       ///< vertical, [0.01, 179]; 0: the camera's own, or 40 with `look`
-  std::optional<float> aperture;  ///< radius of the lens, metres, [0, 1e6]; none: the camera's own
+  std::optional<float> ambient = {};
+  std::string camera = {};  ///< by name; empty: the first, or one that shows it all
+  std::optional<LookAt> look = {};
+  float fov_degrees = 0.0f;  ///< vertical, [0.01, 179]; 0: the camera's own, or 40 with `look`
+  /// Radius of the lens, metres, [0, 1e6]; none: the camera's own.
+  std::optional<float> aperture = {};
   /// Metres along the view direction, (0, 1e12]; none: the camera's own, the point that `look`
   /// looks at, or the middle of the scene. Needs a lens.
-  std::optional<float> focus_distance;
-  std::optional<PixelRect> crop;
+  std::optional<float> focus_distance = {};
+  std::optional<PixelRect> crop = {};
   std::uint32_t seed = 0;
-  std::string device;  ///< part of an OpenCL device's name; empty: the best one
+  std::string device = {};  ///< part of an OpenCL device's name; empty: the best one
   Packets packets = Packets::automatic;
-  std::string kernel_dir;  ///< read kernels from this folder instead of the built-in ones
-  std::string cache;       ///< keep built BVHs in this folder and reuse them; empty: don't
-  bool ground = false;     ///< put an opaque plane under the scene
-  std::vector<std::pair<std::string, float>> opacity;  ///< material name, opacity in [0,1]
+  std::string kernel_dir = {};  ///< read kernels from this folder instead of the built-in ones
+  std::string cache = {};       ///< keep built BVHs in this folder and reuse them; empty: don't
+  bool ground = false;          ///< put an opaque plane under the scene
+  std::vector<std::pair<std::string, float>> opacity = {};  ///< material name, opacity in [0,1]
 };
 
 /// Whether the number of samples differs from pixel to pixel, because a target is set.

@@ -29,7 +29,7 @@ struct PointOptions {
   /// 32-43, 47-58 and 61-74 degrees), others: of equal width from 0 to 90 degrees.
   int rings = 0;
   bool lights = true;  ///< irradiance of each of the scene's lights
-  std::vector<SunDirection> suns;
+  std::vector<SunDirection> suns = {};
   /// A column for each sun, of one ray to a random place of its disk; else one for the sum.
   bool per_sun = false;
   /// For each point and quantity, in eight sets, [8, 2^20]; of all suns together. If there are more
@@ -41,16 +41,16 @@ struct PointOptions {
   /// The footprint is the largest of `footprint`, a half of it, a quarter and so on with which the
   /// bias, before it is corrected, is at most this, [0,1]; 0: `footprint`. None: with which the
   /// correction leaves less in single values than their standard errors, if it clearly leaves more.
-  std::optional<float> max_bias;
+  std::optional<float> max_bias = {};
   float distance = 0;  ///< of AO, as RenderOptions::ao_distance
   float falloff = 0;   ///< of AO, as RenderOptions::ao_falloff
   /// The scene repeats itself with these periods along X and Z, metres; 0: it does not. Its lights
   /// do not.
   float period_x = 0, period_z = 0;
   std::uint32_t seed = 0;
-  std::vector<std::pair<std::string, float>> opacity;  ///< of materials by name, [0,1]
-  bool ground = false;                                 ///< an opaque plane under the scene occludes
-  std::string device, kernel_dir, cache;               ///< as in RenderOptions
+  std::vector<std::pair<std::string, float>> opacity = {};  ///< of materials by name, [0,1]
+  bool ground = false;  ///< an opaque plane under the scene occludes
+  std::string device = {}, kernel_dir = {}, cache = {};  ///< as in RenderOptions
 };
 
 /// Throws Error usage, naming the command line's flag, when a value is out of range.

@@ -87,15 +87,15 @@ using Stop = std::function<bool()>;
 
 /// Progress, interruption and checkpoints of a render. They do not change the finished picture.
 struct RenderControl {
-  Progress progress;
-  Stop stop;
+  Progress progress = {};
+  Stop stop = {};
   /// File for the samples that were traced so far, from which `resume` continues. It is written
   /// every `checkpoint_every` seconds and at the end, whole or not at all. Empty: no file.
-  std::string checkpoint;
+  std::string checkpoint = {};
   double checkpoint_every = 60;
   /// Checkpoint to continue from. Scene and options must be those of the first run, but there may
   /// be more samples or other targets. Empty: start from the beginning.
-  std::string resume;
+  std::string resume = {};
   /// File for the samples that were traced, as the checkpoint has them, written once all are; not
   /// if the render is interrupted. `dapple merge` adds such files up. Empty: no file.
   std::string part = {};

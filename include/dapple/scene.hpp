@@ -119,7 +119,7 @@ struct Environment {
 
 /// A light. Irradiance at a point is the integral of radiance * cosine * transmittance.
 struct Light {
-  std::string name;
+  std::string name = {};
   LightKind kind = LightKind::rect;
   V3f radiance{1, 1, 1};  ///< W/(sr m^2), linear RGB
   V3f position{0, 0, 0};  ///< rect, disk and sphere: centre
@@ -134,11 +134,11 @@ struct Light {
   float cos_outer = -1.0f;
   bool double_sided = false;  ///< mesh: emits from both sides
   /// dome: multiplied by `radiance`; none: the same radiance from all directions.
-  std::shared_ptr<const Environment> environment;
+  std::shared_ptr<const Environment> environment = {};
   float rotation = 0;  ///< dome: radians about +Y, from +Z towards +X
   /// Lights of one group share the layer `light.GROUP`, the sum of their irradiances; empty: the
   /// light has a layer of its own.
-  std::string group;
+  std::string group = {};
   /// Number of its sequence of random numbers; below 0: the next one. With a number of its own a
   /// light keeps its noise when others are removed.
   int sequence = -1;
@@ -146,7 +146,7 @@ struct Light {
 
 struct Camera {
   enum class Kind : std::uint8_t { perspective, orthographic };
-  std::string name;
+  std::string name = {};
   Kind kind = Kind::perspective;
   M44f to_world;          ///< camera looks along its -Z, +Y up, +X right
   float fov_y = 0.7f;     ///< perspective: full vertical angle, radians
@@ -189,8 +189,8 @@ struct SceneOptions {
   float line_radius = 0;       ///< metres: glTF's lines become strands of this radius; 0: skipped
   bool colors = false;         ///< read colour textures and colours of vertices, for the albedo
   bool allow_outside = false;  ///< buffers and images may be outside of the scene file's folder
-  std::optional<double> time;  ///< seconds: the time of the pose; none: at rest
-  std::string animation;       ///< the glTF animation that plays, "*" for all; empty: the first
+  std::optional<double> time = {};  ///< seconds: the time of the pose; none: at rest
+  std::string animation = {};  ///< the glTF animation that plays, "*" for all; empty: the first
 };
 
 /// Throws Error usage, which names the command line's flag, if a value is out of range.

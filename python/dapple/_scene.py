@@ -259,7 +259,7 @@ class Scene:
         (True, True)
         """
         at, facing = _arrays.points_with_normals(points, normals)
-        chosen = _options.apply("occlusion", _native.OcclusionOptions(), options)
+        chosen = _options.apply("occlusion", _native.OcclusionOptions(), options, ("device", "progress"))
         progress = _arguments.progress_function(progress)
         name = _arguments.text("device", device)
         if len(at) == 0:
@@ -288,7 +288,7 @@ class Scene:
         (array([[750., 750., 750.]], dtype=float32), array([[1000., 1000., 1000.]], dtype=float32))
         """
         at, facing = _arrays.points_with_normals(points, normals)
-        chosen = _options.apply("irradiance", _native.IrradianceOptions(), options)
+        chosen = _options.apply("irradiance", _native.IrradianceOptions(), options, ("device", "progress"))
         progress = _arguments.progress_function(progress)
         name = _arguments.text("device", device)
         found = _native.irradiance(self._native, at, facing, chosen, name, progress)
@@ -357,7 +357,7 @@ class Scene:
         >>> picture["ao"].shape, picture["Z"].shape
         ((18, 32, 3), (18, 32))
         """
-        chosen = _options.apply("render", _native.RenderOptions(), options)
+        chosen = _options.apply("render", _native.RenderOptions(), options, ("progress",))
         progress = _arguments.progress_function(progress)
         return Picture(_native.render(self._native, chosen, progress))
 

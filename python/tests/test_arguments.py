@@ -51,6 +51,9 @@ def test_wrong_normals_are_named(plate: dapple.Scene) -> None:
 def test_wrong_options_are_named(plate: dapple.Scene) -> None:
     at = [[0, 0, 0]]
     assert "did you mean rays?" in error_of(lambda: plate.occlusion(at, UP, ray=4))
+    assert "did you mean progress?" in error_of(lambda: plate.occlusion(at, UP, progres=print))
+    assert "did you mean progress?" in error_of(lambda: plate.render(progres=print))
+    assert "did you mean device?" in error_of(lambda: plate.irradiance(at, UP, devic=""))
     assert "known are" in error_of(lambda: plate.occlusion(at, UP, zzz=4))
     assert "rays is 'x'; it must be int" in error_of(lambda: plate.occlusion(at, UP, rays="x"))
     assert "from 1 to" in error_of(lambda: plate.occlusion(at, UP, rays=0))

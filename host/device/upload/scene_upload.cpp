@@ -12,6 +12,7 @@
 #include "device/upload/memory_need.hpp"
 #include "device/upload/normal_upload.hpp"
 #include "device/upload/texture_upload.hpp"
+#include "scene/check/scene_check.hpp"
 #include "scene/lights/dark_light.hpp"
 
 namespace dapple {

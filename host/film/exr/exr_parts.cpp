@@ -46,6 +46,9 @@ void validate(const ExrFormat& format) {
     if (!must_stay_float(name)) continue;
     throw Error(ErrorKind::usage, "--half " + name + ": this layer stays 32-bit");
   }
+  if (static_cast<int>(format.compression) > static_cast<int>(ExrCompression::dwaa))
+    throw Error(ErrorKind::usage, "--compression has no value " +
+                                      std::to_string(static_cast<int>(format.compression)));
   if (format.compression != ExrCompression::dwaa || format.multipart) return;
   throw Error(ErrorKind::usage,
               "--compression dwaa needs --multipart: it is lossy, and normals, depths and ids keep "

@@ -6,6 +6,7 @@
 #include <ImfPartType.h>
 #include <ImfThreading.h>
 
+#include <algorithm>
 #include <cstdint>
 
 #include "dapple/error.hpp"

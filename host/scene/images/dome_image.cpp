@@ -12,6 +12,7 @@
 
 #include "dapple/error.hpp"
 #include "files/exr_reader.hpp"
+#include "scene/check/scene_check.hpp"
 #include "scene/images/color.hpp"
 #include "scene/images/dome_rows.hpp"
 #include "scene/images/radiance_hdr.hpp"

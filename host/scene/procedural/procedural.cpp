@@ -186,6 +186,17 @@ const Recipe& find_recipe(std::string_view name) {
               fmt::format("scene:{}: there is no such scene; there are: {}", name, known));
 }
 
+/// "tree?leaves=5" of "scene:tree?leaves=5", and its parts.
+struct ProceduralName {
+  std::string_view all, scene, query;
+  explicit ProceduralName(std::string_view name) : all(name) {
+    if (all.starts_with("scene:")) all.remove_prefix(6);
+    const std::size_t mark = all.find('?');
+    scene = all.substr(0, mark);
+    if (mark != std::string_view::npos) query = all.substr(mark + 1);
+  }
+};
+
 void warn_if_still(const ProceduralParameters& parameters, Scene& scene) {
   if (parameters.can_move() && parameters.real("wind") > 0) return;
   warn_of_rest(scene.source, scene);
@@ -201,17 +212,18 @@ std::vector<ProceduralHelp> procedural_help() {
 }
 
 Scene make_procedural(const std::string& name, std::optional<double> time) {
-  std::string_view rest = name;
-  if (rest.starts_with("scene:")) rest.remove_prefix(6);
-  const std::size_t mark = rest.find('?');
-  const Recipe& recipe = find_recipe(rest.substr(0, mark));
-  const std::string_view query =
-      mark == std::string_view::npos ? std::string_view{} : rest.substr(mark + 1);
-  const ProceduralParameters parameters(recipe.help, query, time);
+  const ProceduralName parts(name);
+  const Recipe& recipe = find_recipe(parts.scene);
+  const ProceduralParameters parameters(recipe.help, parts.query, time);
   Scene scene = recipe.make(parameters);
-  scene.source = fmt::format("scene:{}", rest);
+  scene.source = fmt::format("scene:{}", parts.all);
   if (time) warn_if_still(parameters, scene);
   return scene;
+}
+
+void check_procedural(const std::string& name) {
+  const ProceduralName parts(name);
+  const ProceduralParameters parameters(find_recipe(parts.scene).help, parts.query, {});
 }
 
 }  // namespace dapple

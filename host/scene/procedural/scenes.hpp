@@ -32,6 +32,9 @@ Scene make_cube_scene(const ProceduralParameters& parameters);
 Scene make_greys_scene(const ProceduralParameters& parameters);
 Scene make_sieve_scene(const ProceduralParameters& parameters);
 
+/// Throws Error usage as make_procedural() does, without making the scene.
+void check_procedural(const std::string& name);
+
 // What they have in common (parts.cpp).
 
 /// Makes a material of alpha mode BLEND; `opacity` is in [0, 1].

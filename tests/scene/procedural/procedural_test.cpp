@@ -10,6 +10,7 @@
 #include <string>
 
 #include "dapple/error.hpp"
+#include "dapple/moving_scene.hpp"
 #include "dapple/scene.hpp"
 #include "scene/corner_normals.hpp"
 #include "scene/procedural/shown_scene.hpp"
@@ -339,6 +340,11 @@ TEST(Procedural, AValueThatIsNoNumberOrOutOfRangeIsRefused) {
             "scene:cloud: leaf_size must be 0 (automatic) or at least 0.001 m");
   EXPECT_EQ(complaint("scene:palm?leaf_size=0.0005"),
             "scene:palm: leaf_size must be 0 (automatic) or at least 0.001 m");
+}
+
+TEST(Procedural, AMovingSceneIsRefusedAtOnce) {
+  EXPECT_THROW(MovingScene("scene:nope"), Error);
+  EXPECT_THROW(MovingScene("scene:tree?leaves=abc"), Error);
 }
 
 TEST(Procedural, OneLeafIsNoLargerThanItsPlant) {
