@@ -107,6 +107,8 @@ TEST_F(ProcessLimits, TheCommandLineSaysWhatItExpects) {
       {"render x.glb -o o.exr --passes ao --light-rays 2", "--light-rays needs the pass light"},
       {"render x.glb -o o.exr --passes light --ao-distance 2", "--ao-distance needs the pass ao"},
       {"render x.glb -o o.exr --back-every 4", "--back-every needs the pass back"},
+      {"render x.glb -o o.exr --half aoo",
+       "--half aoo: there is no such layer; there are all, RGBA"},
       {"render x.glb -o o.exr --roulette 0.5", "--roulette needs --estimator exact"},
       {"render x.glb -o o.json", "--output is o.json, but images are OpenEXR files"},
       {"merge x.dapple -o o.png", "--output is o.png, but images are OpenEXR files"},

@@ -2,6 +2,7 @@
 #include "commands/render/render_arguments.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -312,12 +313,24 @@ double shutter_seconds(const RenderArguments& a, double seconds, int k) {
   return seconds + (open + (close - open) * (k + 0.5) / shutter_times(a)) / frames_per_second(a);
 }
 
+/// A layer that pictures have, or all below one: "light", "light.sun".
+void check_half_layer(const std::string& name) {
+  static const std::vector<std::string> kLayers{"all",   "RGBA", "albedo", "ao",    "bent",
+                                                "light", "N",    "Ng",     "error", "visits"};
+  for (const std::string& layer : kLayers)
+    if (name == layer || name.starts_with(layer + ".")) return;
+  throw Error(ErrorKind::usage,
+              fmt::format("--half {}: there is no such layer; there are {} and light.NAME", name,
+                          fmt::join(kLayers, ", ")));
+}
+
 ExrFormat to_format(const RenderArguments& a) {
   ExrFormat format;
   format.half = parse_names("--half", a.half);
   format.multipart = a.multipart;
   format.compression = parse_compression(a.compression);
   validate(format);
+  for (const std::string& name : format.half) check_half_layer(name);
   return format;
 }
 
