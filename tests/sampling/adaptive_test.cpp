@@ -139,7 +139,9 @@ double node_visits(const RenderStatistics& s) {
 }
 
 TEST(AdaptiveSampling, ByRmseTheSameErrorCostsLess) {
-  RenderOptions options = small_picture();
+  RenderOptions options;
+  options.width = 96;  // smaller ones have few tiles: 0.86 to 1.03 by seeds
+  options.height = 80;
   options.spp = 8;
   options.light = false;
   options.footprint_spp = 16;
@@ -147,7 +149,7 @@ TEST(AdaptiveSampling, ByRmseTheSameErrorCostsLess) {
   const RenderStatistics equal = draw(options).statistics;
   options.target_error = 0;
   options.target_rmse = static_cast<float>(equal.rmse.at("ao"));
-  EXPECT_LT(node_visits(draw(options).statistics), 0.95 * node_visits(equal));
+  EXPECT_LT(node_visits(draw(options).statistics), 0.95 * node_visits(equal)) << "0.90";
 }
 
 TEST(AdaptiveSampling, TheSameCommandGivesTheSameBits) {

@@ -18,7 +18,7 @@ constexpr std::uint64_t kStemStream = 0x7374656d73ULL;  // above the streams of 
 /// same area; or the one asked for.
 float blade_length(const ProceduralParameters& parameters, float usual, float usual_count) {
   if (const float given = given_leaf_length(parameters); given > 0) return given;
-  constexpr float kMost = 10;  // times the usual length, where there are few blades
+  constexpr float kMost = 25;  // times the usual length, where there are few blades
   return usual *
          std::min(kMost, std::sqrt(usual_count / static_cast<float>(parameters.whole("leaves"))));
 }
