@@ -17,7 +17,7 @@ MUTATIONS = [
         "sums-forget-earlier-slices", "kernels/film/film.clh",
         "pixel.has_samples = entry.first_sample + params.slice.first_sample != params.first_sample;",
         "pixel.has_samples = entry.first_sample != params.first_sample;",
-        r"^Resume\."),
+        r"^SliceSums\."),
     Mutation(
         "slab-sign", "kernels/occlusion/packet_node.clh",
         "const bool flip = in_order && rays->backward[axis];",

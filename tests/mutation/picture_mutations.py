@@ -336,7 +336,7 @@ MUTATIONS = [
         "backs-forget-earlier-slices", "host/passes/back_pass.cpp",
         "  packed.sample_count = choice.slots;",
         "  packed.first_sample = 0;\n  packed.sample_count = choice.slots;",
-        r"^(Resume|BackSlices|BackSlicesOfDevice|Backs)\."),
+        r"^SliceSums\."),
     Mutation(
         "exposure-of-all-alike", "host/film/preview/tone_map.cpp",
         "const float off = (static_cast<float>(i) + 0.5f) / static_cast<float>(size) - 0.5f;",
