@@ -55,10 +55,15 @@ std::uint64_t value_count(std::span<const SurfaceSample> samples, bool bent, std
   return sides * (1 + (bent ? 3 : 0) + std::uint64_t{3} * lights);
 }
 
+/// Names may have bytes that are not UTF-8: others stand for them.
+std::string text_of(const Settings& settings) {
+  return json(settings).dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
 }  // namespace
 
 BakeCheckpoint::BakeCheckpoint(const RenderControl& control, Settings settings)
-    : control_(control), settings_(std::move(settings)) {
+    : control_(control), settings_(json::parse(text_of(settings)).get<Settings>()) {
   if (!control.resume.empty()) read();
 }
 
@@ -139,8 +144,7 @@ void BakeCheckpoint::save(bool now) {
   if (!now && since_saved_.seconds() < control_.checkpoint_every) return;
   failure_.clear();
   try {
-    // Names may have bytes that are not UTF-8.
-    const std::string about = json(settings_).dump(-1, ' ', false, json::error_handler_t::replace);
+    const std::string about = text_of(settings_);
     const std::vector<std::byte> packed = compress(as_section(values_));
     // Not synced to disk, as those of renders (experiment 805).
     write_sealed_file(control_.checkpoint, kKind,

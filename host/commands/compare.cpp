@@ -103,10 +103,9 @@ Run add_compare_command(CLI::App& app) {
   app.add_option("--layer", a->layer, "Compare only this layer: RGBA, ao, light.key, ...");
   app.add_option("--png", a->png, "Write a heat map of |A - B|, of --layer or the first layer");
   app.add_option("--html", a->html, "Write a page with the images, heat maps and figures");
-  app.add_option(
-      "--max-rmse", a->max_rmse,
-      "Exit with 5 if a layer's RMSE is larger; Z, P, samples and Cryptomattes count only with "
-      "--layer");
+  app.add_option("--max-rmse", a->max_rmse,
+                 "Exit with 5 if a layer's RMSE is larger; Z, P, motion, samples, visits and "
+                 "Cryptomattes count only with --layer");
   app.add_option(
          "--scale", a->scale,
          "The last colour of heat maps is a difference of the layer's range divided by "

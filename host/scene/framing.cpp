@@ -8,6 +8,8 @@
 #include "dapple/error.hpp"
 #include "dapple/scene.hpp"
 #include "scene/check/finite.hpp"
+#include "scene/check/scene_check.hpp"
+#include "scene/checked_bounds.hpp"
 
 namespace dapple {
 namespace {
@@ -23,15 +25,15 @@ M44f from_rows(V3f x, V3f y, V3f z, V3f origin) {
 }
 
 Box3f bounds_or_unit_box(const Scene& scene, const M44f& transform = {}) {
-  const Box3f bounds = scene_bounds(scene, transform);
+  const Box3f bounds = checked_bounds(scene, transform);
   return bounds.isEmpty() ? Imath::transform(Box3f({-0.5f, 0, -0.5f}, {0.5f, 1, 0.5f}), transform)
                           : bounds;
 }
 
 /// Two directions of a picture: a camera sees p between two planes if |across . (p - camera)| <=
-/// tangent * back . (camera - p).
+/// tangent * back . (camera - p). Points are relative to the middle of the scene.
 struct Axis {
-  V3f across, back;
+  V3f across, back, middle;
 };
 
 /// The largest values over the scene of across . p + tangent * back . p, of the same with -across,
@@ -41,7 +43,8 @@ struct Touch {
   Touch(const Scene& scene, const Axis& axis, float tangent) {
     const V3f a = axis.across + tangent * axis.back, b = -axis.across + tangent * axis.back;
     const M44f functions(a.x, b.x, axis.back.x, 0, a.y, b.y, axis.back.y, 0,  //
-                         a.z, b.z, axis.back.z, 0, 0, 0, 0, 1);
+                         a.z, b.z, axis.back.z, 0,                            //
+                         -a.dot(axis.middle), -b.dot(axis.middle), -axis.back.dot(axis.middle), 1);
     const Box3f box = bounds_or_unit_box(scene, functions);
     right = box.max.x;
     left = box.max.y;
@@ -60,8 +63,8 @@ float least_distance(const Touch& touch, float tangent) {
 /// Where a camera at `distance` along `back` is along `across` so that the picture has equal
 /// margins: planes of a smaller tangent touch the scene on both sides. `touch`: at `tangent`.
 float centred(const Scene& scene, const Axis& axis, Touch touch, float tangent, float distance) {
-  constexpr int kSteps = 4;         // each visits all vertices
-  constexpr float kEnough = 1e-3f;  // of the frame
+  constexpr int kSteps = 2;                                         // each visits all vertices
+  const float enough = 2e-3f * tangent * (distance - touch.front);  // a part of the frame
   const auto slack = [&](const Touch& at, float of) {
     return 2 * of * distance - at.right - at.left;
   };
@@ -70,7 +73,7 @@ float centred(const Scene& scene, const Axis& axis, Touch touch, float tangent, 
   float none = 0, wide = tangent;
   for (int step = 0; step < kSteps; ++step) {
     const float has = slack(touch, wide);
-    if (!(has > kEnough * tangent * distance)) break;
+    if (!(has > enough)) break;
     if (step == 0) none = slack(Touch(scene, axis, 0), 0);
     if (!(none < 0)) break;
     wide *= none / (none - has);
@@ -111,17 +114,19 @@ Camera frame_scene(const Scene& scene, float aspect, float fov_y) {
   require_field_of_view(fov_y);
   if (!(aspect > 0) || !std::isfinite(aspect))
     throw Error(ErrorKind::usage, "camera: the aspect ratio must be above 0, and finite");
-  const V3f size = bounds_or_unit_box(scene).size();
+  check_geometry(scene);
+  const Box3f bounds = bounds_or_unit_box(scene);
+  const V3f size = bounds.size();
   const V3f front = size.z > kElongation * size.x ? V3f(1, 0, 0) : V3f(0, 0, 1);
   Camera camera = look_at(front + V3f(0, kFrameElevation, 0), {0, 0, 0}, {0, 1, 0}, fov_y);
   const float tangent = std::tan(fov_y / 2) / kFrameMargin;
   const V3f right = row(camera.to_world, 0), up = row(camera.to_world, 1),
             back = row(camera.to_world, 2);
-  const Axis horizontal{right, back}, vertical{up, back};
+  const Axis horizontal{right, back, bounds.center()}, vertical{up, back, bounds.center()};
   const float wide = tangent * aspect;
   const Touch sides(scene, horizontal, wide), ends(scene, vertical, tangent);
   const float distance = std::max(least_distance(sides, wide), least_distance(ends, tangent));
-  const V3f from = right * centred(scene, horizontal, sides, wide, distance) +
+  const V3f from = bounds.center() + right * centred(scene, horizontal, sides, wide, distance) +
                    up * centred(scene, vertical, ends, tangent, distance) + back * distance;
   for (int k = 0; k < 3; ++k) camera.to_world[3][k] = from[k];
   camera.name = "frame";

@@ -10,6 +10,7 @@
 #include "dapple/scene.hpp"
 #include "scene/check/invertible.hpp"
 #include "scene/check/scene_check.hpp"
+#include "scene/checked_bounds.hpp"
 
 namespace dapple {
 namespace {
@@ -59,6 +60,10 @@ bool is_placed(const Instance& instance) {
 
 Box3f scene_bounds(const Scene& scene, const M44f& transform) {
   check_geometry(scene);
+  return checked_bounds(scene, transform);
+}
+
+Box3f checked_bounds(const Scene& scene, const M44f& transform) {
   std::vector<std::uint32_t> instance_counts(scene.meshes.size(), 0);
   for (const Instance& instance : scene.instances)
     if (is_placed(instance)) ++instance_counts[instance.mesh];

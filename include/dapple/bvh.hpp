@@ -67,11 +67,12 @@ struct SceneBvh {
 /// and removes unfinished files of earlier runs. Throws Error usage, which names --cache.
 void prepare_bvh_cache(const std::string& folder);
 
-/// Builds the BVH of a scene, which must have a triangle or segment that can be hit. Takes time
-/// n log n of n triangles, their opacities linear, in parallel; the bits do not depend on the number of threads. With a
-/// `cache_folder`, objects that were built before are read from it, with the same bits, and others
-/// are written to it; damaged files and those of other versions are replaced. Throws Error failed
-/// if the BVH is too deep for the kernels' stack or too large for 32-bit indices.
+/// Builds the BVH of a scene, which must have a triangle or segment that can be hit. The time grows
+/// as n log n with n triangles, that of their opacities as n. Runs in parallel; the bits do not
+/// depend on the number of threads. With a `cache_folder`, objects that were built before are read
+/// from it, with the same bits, and others are written to it; damaged files and those of other
+/// versions are replaced. Throws Error failed if the BVH is too deep for the kernels' stack or too
+/// large for 32-bit indices.
 SceneBvh build_bvh(const Scene& scene, const std::string& cache_folder = "");
 
 /// A range of indices of an array: begin, up to but not including end.

@@ -151,6 +151,14 @@ TEST_F(Png, ThinCoverageCountsByItsAlphaForTheExposure) {
   EXPECT_GT(automatic_exposure(film), 0.6f * automatic_exposure(lit_film({1, 1}, 0.5f, 1)));
 }
 
+TEST_F(Png, PixelsBeyondThePictureHaveAnExposureToo) {
+  Film film = lit_film({1, 1, 1, 1}, 0.5f, 0.5f);
+  const float inside = automatic_exposure(film);
+  film.width = 2;
+  film.data_window = {-1, -3, 2, -3};
+  EXPECT_NEAR(automatic_exposure(film), inside, 1e-4f * inside);
+}
+
 TEST_F(Png, TheMiddleCountsMoreForTheExposure) {
   Film dark_edges = lit_film({1, 1, 1}, 0.5f, 0.5f), dark_middle = dark_edges;
   for (std::size_t p = 0; p < 3; ++p)

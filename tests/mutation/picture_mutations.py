@@ -339,7 +339,7 @@ MUTATIONS = [
         r"^SliceSums\."),
     Mutation(
         "exposure-of-all-alike", "host/film/preview/tone_map.cpp",
-        "const float off = (static_cast<float>(i) + 0.5f) / static_cast<float>(size) - 0.5f;",
-        "const float off = 0.0f * static_cast<float>(i);",
+        "const double off = (static_cast<double>(i) + 0.5) / std::max(size, 1) - 0.5;",
+        "const double off = 0.0 * static_cast<double>(i);",
         r"^Png\."),
 ]

@@ -66,6 +66,17 @@ TEST(FrameScene, TheSceneFillsTheFrameAndIsInItsMiddle) {
   }
 }
 
+TEST(FrameScene, ASceneFarFromTheOriginIsInTheMiddleToo) {
+  for (const float away : {-1e5f, 3e4f, 1e5f}) {
+    const Scene scene = triangle_at({away, 0, away}, {100, 10, 100});
+    const Camera camera = frame_scene(scene, 16.0f / 9);
+    SCOPED_TRACE(away);
+    const Imath::Box2f extent = extent_in_frame(camera, 16.0f / 9, scene.meshes[0].positions);
+    EXPECT_NEAR(extent.center().x, 0, 5e-3f);  // coordinates have steps of 8 mm
+    EXPECT_NEAR(extent.center().y, 0, 5e-3f);
+  }
+}
+
 // The corners of a tree's box are far outside of its crown. They must not make it smaller.
 TEST(FrameScene, EmptyCornersOfTheBoundsDoNotMatter) {
   Scene scene = triangle_at({0, 0, 0}, {1, 1, 1});

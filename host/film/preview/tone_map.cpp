@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "scene/images/color.hpp"
@@ -19,25 +20,25 @@ struct Seen {
 class CentreWeights {
  public:
   explicit CentreWeights(const Film& film)
-      : window_(film.data_window), columns_(weights(film.width)), rows_(weights(film.height)) {}
+      : columns_(weights(film.data_window.x0, film.data_window.x1, film.width)),
+        rows_(weights(film.data_window.y0, film.data_window.y1, film.height)) {}
   [[nodiscard]] float of(std::size_t pixel) const {
-    const auto width = static_cast<std::size_t>(window_.width());
-    return columns_[pixel % width + static_cast<std::size_t>(window_.x0)] *
-           rows_[pixel / width + static_cast<std::size_t>(window_.y0)];
+    return columns_[pixel % columns_.size()] * rows_[pixel / columns_.size()];
   }
 
  private:
-  static std::vector<float> weights(int size) {
-    constexpr float kDeviation = 0.18f;
-    std::vector<float> of(static_cast<std::size_t>(size));
-    for (std::size_t i = 0; i < of.size(); ++i) {
-      const float off = (static_cast<float>(i) + 0.5f) / static_cast<float>(size) - 0.5f;
-      of[i] = std::exp(-off * off / (2 * kDeviation * kDeviation));
+  /// Of the pixels of the data window, which may reach beyond the picture's `size`.
+  static std::vector<float> weights(int first, int last, int size) {
+    constexpr double kDeviation = 0.18, kFarthest = 2;
+    std::vector<float> of;
+    for (std::int64_t i = first; i <= last; ++i) {
+      const double off = (static_cast<double>(i) + 0.5) / std::max(size, 1) - 0.5;
+      const double near = std::clamp(off, -kFarthest, kFarthest);
+      of.push_back(static_cast<float>(std::exp(-near * near / (2 * kDeviation * kDeviation))));
     }
     return of;
   }
 
-  PixelRect window_;
   std::vector<float> columns_, rows_;
 };
 
