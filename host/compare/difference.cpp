@@ -92,8 +92,8 @@ std::string window_text(const Film& film) {
                      w.x0, w.y0, film.width, film.height);
 }
 
-// Distances, positions, motions and counts are not in [0,1] like shades, so --max-rmse does not suit
-// them.
+// Distances, positions, motions and counts are not in [0,1] like shades, so --max-rmse does not
+// suit them.
 bool is_exempt(const std::string& layer) {
   return layer == "Z" || layer == "P" || layer == "motion" || layer == "samples" ||
          layer == "visits" || layer.starts_with("crypto_");

@@ -20,8 +20,8 @@ struct SampleGroup {
 
 struct Round {
   std::vector<SampleGroup> groups;  ///< to be traced in this order
-  std::uint32_t group = 0;        ///< start of the next slice: group, entry of its work, and
-  std::uint32_t entry = 0;        ///< sample, counted from the entry's own first
+  std::uint32_t group = 0;          ///< start of the next slice: group, entry of its work, and
+  std::uint32_t entry = 0;          ///< sample, counted from the entry's own first
   std::uint32_t sample = 0;
 
   [[nodiscard]] bool is_done() const { return group >= groups.size(); }

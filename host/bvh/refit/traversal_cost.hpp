@@ -1,5 +1,5 @@
-// How much rays have to do in an object, to tell when refitting has spoilt its BVH. In: the nodes of
-// an object and the vertices of its mesh. Out: a number to compare with an earlier one.
+// How much rays have to do in an object, to tell when refitting has spoilt its BVH. In: the nodes
+// of an object and the vertices of its mesh. Out: a number to compare with an earlier one.
 #pragma once
 
 #include <span>
