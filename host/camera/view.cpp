@@ -172,11 +172,12 @@ void check_camera(const Camera& camera) {
       throw Error(ErrorKind::input, fmt::format("camera \"{:.100}\" has the {} {}; it must be {}",
                                                 camera.name, what, value, range));
   };
+  if (!is_finite(camera.to_world))
+    throw Error(ErrorKind::input,
+                fmt::format("camera \"{:.100}\" has a place that is not finite", camera.name));
   // In doubles: products of three small scales vanish in floats.
   const double volume = Imath::M44d(camera.to_world).determinant();
-  const bool is_sound = is_finite(camera.to_world) && std::isfinite(volume) && volume != 0;
-  that(is_sound, "determinant", static_cast<float>(volume),
-       "finite and not 0, and its place finite");
+  that(volume != 0, "determinant", static_cast<float>(volume), "other than 0");
   that(camera.kind == Camera::Kind::perspective || camera.kind == Camera::Kind::orthographic,
        "kind", static_cast<float>(camera.kind), "perspective or orthographic");
   const char *finite = "finite and not 0", *positive = "finite, 0 or more";

@@ -8,6 +8,7 @@
 
 #include "dapple/error.hpp"
 #include "dapple/options.hpp"
+#include "scene/check/enumerator.hpp"
 
 namespace dapple {
 
@@ -21,7 +22,7 @@ inline void check_range(std::string_view name, double value, double low, double 
 /// Throws Error usage if an enumeration, whose last enumerator is `last`, has no such value.
 template <class Enumeration>
 void check_enumerator(std::string_view name, Enumeration value, Enumeration last) {
-  if (static_cast<int>(value) <= static_cast<int>(last)) return;
+  if (is_enumerator(value, last)) return;
   throw Error(ErrorKind::usage, fmt::format("{} has no value {}", name, static_cast<int>(value)));
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bvh/build/primitive_box.hpp"
 #include "bvh/build/quantize_boxes.hpp"
 
 namespace dapple {
@@ -12,8 +13,6 @@ namespace {
 constexpr std::size_t kSamples = std::size_t{1} << 14;
 
 std::size_t stride_of(std::size_t count) { return (count + kSamples - 1) / kSamples; }
-
-double half_area_of(const V3d& size) { return size.x * size.y + size.y * size.z + size.z * size.x; }
 
 /// Half the surface area of a box in which evenly spread points would have the mean absolute
 /// deviations of the mesh's: far ones hardly count.
@@ -30,7 +29,7 @@ double area_of_most(const Mesh& mesh) {
     const V3d off = V3d(p) - mean;
     return V3d(std::fabs(off.x), std::fabs(off.y), std::fabs(off.z));
   });
-  return half_area_of(4.0 * deviation);  // L / 4 is that of a side of length L
+  return half_area(Box3f(V3f(0, 0, 0), V3f(4.0 * deviation)));  // L / 4 is that of a side L
 }
 
 }  // namespace
@@ -43,7 +42,7 @@ double traversal_cost(std::span<const BvhNode> nodes, const Mesh& mesh) {
   for (std::size_t n = 0; n < nodes.size(); n += stride, ++seen) {
     for (unsigned slot = 0; slot < DAPPLE_BVH_WIDTH; ++slot) {
       if (!(nodes[n].inner_mask >> slot & 1)) continue;
-      visits += std::min(half_area_of(V3d(child_box(nodes[n], slot).size())) / most, 1.0);
+      visits += std::min(half_area(child_box(nodes[n], slot)) / most, 1.0);
     }
   }
   return 1 + visits * static_cast<double>(nodes.size()) / std::max(seen, 1.0);

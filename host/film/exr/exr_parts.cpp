@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "dapple/error.hpp"
+#include "scene/check/enumerator.hpp"
 
 namespace dapple {
 namespace {
@@ -46,7 +47,7 @@ void validate(const ExrFormat& format) {
     if (!must_stay_float(name)) continue;
     throw Error(ErrorKind::usage, "--half " + name + ": this layer stays 32-bit");
   }
-  if (static_cast<int>(format.compression) > static_cast<int>(ExrCompression::dwaa))
+  if (!is_enumerator(format.compression, ExrCompression::dwaa))
     throw Error(ErrorKind::usage, "--compression has no value " +
                                       std::to_string(static_cast<int>(format.compression)));
   if (format.compression != ExrCompression::dwaa || format.multipart) return;

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "dapple/error.hpp"
+#include "scene/check/enumerator.hpp"
 #include "scene/check/finite.hpp"
 #include "scene/check/numeric_range.hpp"
 #include "scene/message.hpp"
@@ -90,12 +91,6 @@ bool is_radiance(const V3f& v) {
   return is_color(v) && std::max({v.x, v.y, v.z}) <= static_cast<float>(kLargestRadiance);
 }
 
-/// Whether an enumerator exists. `last`: the last one.
-template <class Enumeration>
-bool is_one_of(Enumeration value, Enumeration last) {
-  return static_cast<int>(value) <= static_cast<int>(last);
-}
-
 /// -1 is none.
 bool is_index(int index, std::size_t count) {
   return index >= -1 && (index < 0 || static_cast<std::size_t>(index) < count);
@@ -104,7 +99,7 @@ bool is_index(int index, std::size_t count) {
 void check_material(const Scene& scene, std::size_t number) {
   const Material& material = scene.materials[number];
   const Check check(scene, "material", number, material.name);
-  check.that(is_one_of(material.alpha_mode, AlphaMode::blend), "has no alpha mode {}",
+  check.that(is_enumerator(material.alpha_mode, AlphaMode::blend), "has no alpha mode {}",
              static_cast<int>(material.alpha_mode));
   check.that(is_index(material.alpha_texture, scene.textures.size()), "has no texture {}",
              material.alpha_texture);
@@ -122,7 +117,7 @@ void check_image(const Scene& scene, const char* what, std::size_t number, const
   const std::size_t texels = std::size_t{image.width} * image.height;
   check.that(texels > 0 && values == channels * texels, "has {} values for {} x {} texels", values,
              image.width, image.height);
-  check.that(is_one_of(image.wrap_s, Wrap::mirror) && is_one_of(image.wrap_t, Wrap::mirror),
+  check.that(is_enumerator(image.wrap_s, Wrap::mirror) && is_enumerator(image.wrap_t, Wrap::mirror),
              "has the wrap modes {} and {}, which there are not", static_cast<int>(image.wrap_s),
              static_cast<int>(image.wrap_t));
 }
@@ -143,7 +138,7 @@ void check_light(const Scene& scene, std::size_t number) {
   check.that(is_radiance(light.radiance),
              "has a radiance that is negative, not finite or above {:g}", kLargestRadiance);
   const LightKind kind = light.kind;
-  check.that(is_one_of(kind, LightKind::disk), "has no kind {}", static_cast<int>(kind));
+  check.that(is_enumerator(kind, LightKind::disk), "has no kind {}", static_cast<int>(kind));
   check.that(std::isfinite(light.rotation), "has the rotation {}", light.rotation);
   check.that(light.cos_outer >= -1 && light.cos_outer <= light.cos_inner && light.cos_inner <= 1,
              "has a cone of the cosines {} inside and {} outside", light.cos_inner,

@@ -9,6 +9,7 @@
 #include "bvh/build/quantize_boxes.hpp"
 #include "bvh/opacity/prefilter.hpp"
 #include "support/failing_opencl.hpp"
+#include "support/scenes/scattered_tree.hpp"
 #include "support/scenes/scene_on_device.hpp"
 #include "support/scenes/swaying_tree.hpp"
 
@@ -244,23 +245,10 @@ TEST(Refit, AnUnchangedSceneChangesNothing) {
   EXPECT_TRUE(update.nodes.empty() && update.blocks.empty());
 }
 
-/// The scene with each leaf moved by a random offset, so that a refitted BVH is slow.
-Scene scattered(const Scene& still) {
-  Scene scene = still;
-  scene_test::Points points(3);
-  Mesh& mesh = scene.meshes[0];
-  for (std::size_t v = motion::first_leaf_vertex(scene, mesh); v + 4 <= mesh.positions.size();
-       v += 4) {
-    const V3f by = points.in_cube(5);
-    for (int k = 0; k < 4; ++k) mesh.positions[v + k] += by;
-  }
-  return scene;
-}
-
 TEST(Refit, AnObjectWhoseTreeHasDecayedIsBuiltAnew) {
   const Scene still = tree_and_fence();
   UpdatableBvh updatable(still);
-  const Scene moved = scattered(still);
+  const Scene moved = motion::scattered(still, 5);
   const BvhUpdate update = updatable.update(moved);
   EXPECT_EQ(update.objects_rebuilt, 1u);
   EXPECT_EQ(update.objects_kept, 1u);

@@ -4,24 +4,17 @@
 #include <gtest/gtest.h>
 
 #include "dapple/bvh.hpp"
-#include "support/scenes/scene_on_device.hpp"
-#include "support/scenes/swaying_tree.hpp"
+#include "support/scenes/scattered_tree.hpp"
 
 namespace dapple {
 namespace {
 
 Scene tree() { return make_procedural("scene:tree?leaves=5000"); }
 
-/// The scene with each leaf moved by up to two metres, and the first triangle by `up` metres.
+/// The tree with its leaves scattered, and the first triangle `up` metres higher.
 Scene scattered(const Scene& still, float up) {
-  Scene scene = still;
-  scene_test::Points points(3);
+  Scene scene = motion::scattered(still, 2);
   Mesh& mesh = scene.meshes[0];
-  for (std::size_t v = motion::first_leaf_vertex(scene, mesh); v + 4 <= mesh.positions.size();
-       v += 4) {
-    const V3f by = points.in_cube(2);
-    for (int k = 0; k < 4; ++k) mesh.positions[v + k] += by;
-  }
   for (std::size_t k = 0; k < 3; ++k) mesh.positions[mesh.indices[k]].y += up;
   return scene;
 }
