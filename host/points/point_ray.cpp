@@ -12,7 +12,7 @@ Ray point_ray(const V3f& point, const V3f& normal, const V3f& direction, float s
               std::uint32_t key) {
   Ray ray{};
   const float start =
-      std::max({std::fabs(point.x), std::fabs(point.y), std::fabs(point.z)}) * kCallersRoundings;
+      std::max({std::fabs(point.x), std::fabs(point.y), std::fabs(point.z)}) * kOriginOffset;
   for (int axis = 0; axis < 3; ++axis) {
     ray.origin[axis] = point[axis] + normal[axis] * start;
     ray.direction[axis] = direction[axis];

@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 
+#include "dapple/film.hpp"
+#include "film/exr/exr_parts.hpp"
 #include "support/programs/program_run.hpp"
 
 namespace dapple {
@@ -40,6 +43,25 @@ TEST_F(FileFormatCommand, ANoteTellsOfHalfLayersThatTheImageDoesNotHave) {
   EXPECT_EQ(run.code, 0);
   EXPECT_TRUE(contains(run.err, "note: --half light.moon: there is no such layer")) << run.err;
   EXPECT_FALSE(contains(run.err, "--half ao")) << run.err;
+}
+
+TEST_F(FileFormatCommand, EveryLayerOfAPictureMayBeNamed) {
+  const std::string picture =
+      "render 'scene:tree?leaves=100' --width 16 --height 16 -q -o all.exr ";
+  const std::string passes = "--passes ao,light,albedo,back,visits";
+  std::set<std::string> layers;
+  for (const char* more : {",motion --frame 0 --spp 4 --cryptomatte object,material",
+                           " --target-error 0.5 --max-spp 16"}) {
+    const auto run = dapple(picture + passes + more);
+    ASSERT_EQ(run.code, 0) << run.err;
+    for (const Plane& plane : read_exr(path("all.exr")).planes)
+      layers.insert(layer_of(plane.channel));
+  }
+  EXPECT_GT(layers.size(), 18u);
+  for (const std::string& layer : layers) {
+    const auto run = dapple("render missing.glb -o o.exr --half " + layer);
+    EXPECT_TRUE(run.code == 3 || contains(run.err, "stays 32-bit")) << layer << ": " << run.err;
+  }
 }
 
 }  // namespace

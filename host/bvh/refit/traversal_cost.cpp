@@ -16,7 +16,7 @@ std::size_t stride_of(std::size_t count) { return (count + kSamples - 1) / kSamp
 
 /// Half the surface area of a box in which evenly spread points would have the mean absolute
 /// deviations of the mesh's: far ones hardly count.
-double area_of_most(const Mesh& mesh) {
+double robust_area(const Mesh& mesh) {
   const std::size_t count = mesh.positions.size(), stride = stride_of(count);
   const auto mean_of = [&](const auto& value) {
     V3d sum(0, 0, 0);
@@ -35,14 +35,14 @@ double area_of_most(const Mesh& mesh) {
 }  // namespace
 
 double traversal_cost(std::span<const BvhNode> nodes, const Mesh& mesh) {
-  const double most = area_of_most(mesh);
-  if (!(most > 0)) return 1;
+  const double area = robust_area(mesh);
+  if (!(area > 0)) return 1;
   const std::size_t stride = stride_of(nodes.size());
   double visits = 0, seen = 0;
   for (std::size_t n = 0; n < nodes.size(); n += stride, ++seen) {
     for (unsigned slot = 0; slot < DAPPLE_BVH_WIDTH; ++slot) {
       if (!(nodes[n].inner_mask >> slot & 1)) continue;
-      visits += std::min(half_area(child_box(nodes[n], slot)) / most, 1.0);
+      visits += std::min(half_area(child_box(nodes[n], slot)) / area, 1.0);
     }
   }
   return 1 + visits * static_cast<double>(nodes.size()) / std::max(seen, 1.0);

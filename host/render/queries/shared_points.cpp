@@ -30,7 +30,7 @@ SurfacePoint surface_point(const V3f& position, const V3f& normal, const V3f& pl
     along += term * std::fabs(plane[axis]);
     largest = std::max(largest, term);
   }
-  point.offset = along * kCallersRoundings + (is_bounded ? 0.0f : largest * kInAllDirections);
+  point.offset = along * kOriginOffset + (is_bounded ? 0.0f : largest * kInAllDirections);
   point.pixel = static_cast<uint>(index);
   return point;
 }
@@ -59,7 +59,7 @@ V3f reach_in_world(const V3f& reach, const M44f& to_world) {
 float offset_above_plane(const V3f& reach, const V3f& normal) {
   float along = 0;
   for (int axis = 0; axis < 3; ++axis) along += reach[axis] * std::fabs(normal[axis]);
-  return along * kTermsOfReach * kCallersRoundings;
+  return along * kTermsOfReach * kOriginOffset;
 }
 
 SharedPoints::SharedPoints(DeviceContext& context, const QueryPoints& points,

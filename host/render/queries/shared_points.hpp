@@ -14,7 +14,7 @@
 namespace dapple {
 
 /// 64 roundings of a coordinate, as a part of it: callers round those of their points.
-inline constexpr float kCallersRoundings = 3.8e-6f;
+inline constexpr float kOriginOffset = 3.8e-6f;
 
 /// A rounding of a term of QueryPoints::reaches counts as this part of one of a coordinate.
 inline constexpr float kTermsOfReach = 1.0f / 8;
