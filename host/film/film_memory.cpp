@@ -31,6 +31,8 @@ std::size_t film_bytes_per_pixel(std::size_t lights, const RenderOptions& option
                      DAPPLE_ALBEDO_PLANES + DAPPLE_DOME_PLANES * lights +
                      squares;  // as if all were domes
   std::size_t channels = kSurfaceChannels + kLightChannels * lights;
+  if (options.albedo) sums += DAPPLE_REFLECTED_PLANES * (1 + lights);
+  if (options.beauty) channels += 3 * (1 + lights);
   if (options.back) {
     sums += DAPPLE_BACK_PLANES + 1 + DAPPLE_DOME_CHANNELS * lights;  // 1: AO
     channels += 3 * (1 + lights);

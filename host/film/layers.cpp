@@ -8,11 +8,10 @@
 #include <numbers>
 #include <numeric>
 #include <set>
-#include <span>
 
 #include "camera/camera_splitting.hpp"
-#include "film/back_sources.hpp"
 #include "film/light_layers.hpp"
+#include "film/light_planes.hpp"
 #include "film/sums/film_sums.hpp"
 #include "film/traced_picture.hpp"
 #include "scene/lights/dark_light.hpp"
@@ -30,124 +29,6 @@ bool is_name_character(char c) {
 /// Whether `c` is the second or a later byte of a UTF-8 character. In "größe" the characters ö and
 /// ß become one underscore each.
 bool continues_character(char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; }
-
-/// The picture's fixed-point sums, by plane and pixel, as doubles.
-class Sums {
- public:
-  Sums(std::span<const std::int64_t> sums, std::uint32_t pixels) : sums_(sums), pixels_(pixels) {}
-  [[nodiscard]] double at(std::uint32_t plane, std::uint32_t pixel) const {
-    return static_cast<double>(sums_[std::size_t{plane} * pixels_ + pixel]);
-  }
-  [[nodiscard]] double total(std::uint32_t plane) const {
-    double sum = 0;
-    for (std::uint32_t p = 0; p < pixels_; ++p) sum += at(plane, p);
-    return sum;
-  }
-
- private:
-  std::span<const std::int64_t> sums_;
-  std::uint32_t pixels_;
-};
-
-/// The number that a pixel's sums are divided by. Without samples the sums are 0 and this is 1: the
-/// pixel looks as if all its rays missed.
-double sample_count(const TracedPicture& picture, std::uint32_t pixel) {
-  return std::max(1u, picture.samples[pixel]);
-}
-
-/// The same for the sums of backs.
-double back_sample_count(const Sums& sums, const FilmLayout& layout, std::uint32_t pixel) {
-  return std::max(1.0, sums.at(layout.back_samples, pixel));
-}
-
-/// The pixels whose sums of backs are used; empty: each pixel's own.
-std::vector<std::uint32_t> sources_of_backs(const Sums& sums, const TracedPicture& picture,
-                                            const FilmLayout& layout) {
-  if (!layout.back_samples) return {};
-  const auto has = [&](std::uint32_t p) { return sums.at(layout.back_samples, p) > 0; };
-  const auto needs = [&](std::uint32_t p) { return picture.samples[p] > 0 && !has(p); };
-  for (std::uint32_t p = 0; p < layout.pixels; ++p)
-    if (needs(p)) return back_sources(layout.pixels, layout.width, needs, has);
-  return {};
-}
-
-/// Irradiance of the lights at a pixel, linear RGB: with occlusion, of all lights together or of
-/// one; and a percentile of that without occlusion, of all lights together.
-class LightPlanes {
- public:
-  LightPlanes(const Sums& sums, const TracedPicture& picture, const FilmLayout& layout,
-              const RenderOptions& options, const std::vector<Light>& lights)
-      : sums_(sums),
-        picture_(picture),
-        layout_(layout),
-        lights_(lights),
-        backs_(sources_of_backs(sums, picture, layout)),
-        inverse_rays_(1.0 / options.light_rays) {}
-
-  [[nodiscard]] V3d shadowed(std::uint32_t pixel) const {
-    V3d value(0.0);
-    for (std::size_t l = 0; l < lights_.size(); ++l) value += one(l, pixel);
-    return value;
-  }
-  [[nodiscard]] V3d one(std::size_t light, std::uint32_t pixel) const {
-    return of_planes(light, layout_.lights[light].first, pixel, sample_count(picture_, pixel));
-  }
-  [[nodiscard]] V3d sum(const std::vector<std::size_t>& lights, std::uint32_t pixel) const {
-    V3d value(0.0);
-    for (const std::size_t l : lights) value += one(l, pixel);
-    return value;
-  }
-  /// The same of the other side of the surfaces.
-  [[nodiscard]] V3d back(const std::vector<std::size_t>& lights, std::uint32_t pixel) const {
-    const std::uint32_t source = back_source(pixel);
-    const double samples = back_sample_count(sums_, layout_, source);
-    V3d value(0.0);
-    for (const std::size_t l : lights)
-      value += of_planes(l, layout_.back_lights[l], source, samples);
-    return value;
-  }
-  /// The pixel whose sums of backs are this one's.
-  [[nodiscard]] std::uint32_t back_source(std::uint32_t pixel) const {
-    return backs_.empty() ? pixel : backs_[pixel];
-  }
-  /// The irradiance without occlusion that `share` of the pixels do not exceed, in the channel in
-  /// which it is largest. Only those pixels count whose surfaces face a light; 0 if none do.
-  [[nodiscard]] double unoccluded_percentile(double share) const {
-    std::vector<double> values;
-    for (std::uint32_t p = 0; p < layout_.pixels; ++p) {
-      const double hits = sums_.at(DAPPLE_PLANE_HITS, p);
-      if (hits == 0) continue;
-      V3d value(0.0);
-      for (std::size_t l = 0; l < lights_.size(); ++l)
-        value += of_planes(l, layout_.lights[l].unoccluded(), p, hits);
-      const double largest = std::max({value.x, value.y, value.z});
-      if (largest > 0) values.push_back(largest);
-    }
-    if (values.empty()) return 0;
-    const auto at = values.begin() +
-                    static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), at, values.end());
-    return *at;
-  }
-
- private:
-  /// Irradiance from the light's one plane, or its three, from `first` on.
-  [[nodiscard]] V3d of_planes(std::size_t light, std::uint32_t first, std::uint32_t pixel,
-                              double samples) const {
-    const std::uint32_t last = layout_.lights[light].channels - 1;
-    const V3d sum(sums_.at(first, pixel), sums_.at(first + std::min(1u, last), pixel),
-                  sums_.at(first + last, pixel));
-    return V3d(lights_[light].radiance) * sum *
-           (inverse_rays_ / (layout_.lights[light].scale * samples));
-  }
-
-  const Sums& sums_;
-  const TracedPicture& picture_;
-  const FilmLayout& layout_;
-  const std::vector<Light>& lights_;
-  std::vector<std::uint32_t> backs_;
-  double inverse_rays_;
-};
 
 class Planes {
  public:
@@ -255,13 +136,21 @@ class Layers {
         light_(light),
         planes_(layout.pixels) {}
 
-  /// RGB is premultiplied by A: camera rays that miss the scene count as 0.
-  void add_beauty(double ambient) {
+  /// RGB is premultiplied by A: camera rays that miss the scene count as 0. Layers of the sky and
+  /// of each light add up to it.
+  void add_beauty(double ambient, const std::vector<LightLayer>& layers) {
     planes_.add3("", "RGB", [&](std::uint32_t p) {
-      const double covered = ao(p) - (1.0 - hits(p) / spp(p));
-      return albedo(p) * (V3d(ambient) * covered + light_.shadowed(p) / std::numbers::pi);
+      V3d sum = ambient * from_sky(p);
+      for (const LightLayer& layer : layers) sum += from_lights(layer.lights, p);
+      return sum;
     });
     planes_.add("A", [&](std::uint32_t p) { return hits(p) / spp(p); });
+    if (!options_.beauty) return;
+    planes_.add3("beauty." + ambient_layer_name(layers), "RGB",
+                 [&](std::uint32_t p) { return ambient * from_sky(p); });
+    for (const LightLayer& layer : layers)
+      planes_.add3("beauty." + layer.name, "RGB",
+                   [&](std::uint32_t p) { return from_lights(layer.lights, p); });
   }
 
   void add_ao() {
@@ -347,6 +236,19 @@ class Layers {
     return options_.ao ? ao_of(layout_.ao, p, hits(p), spp(p)) : 1.0;
   }
 
+  /// Radiance of surfaces below a sky of radiance 1. Without albedo they are white, without AO
+  /// nothing hides the sky.
+  [[nodiscard]] V3d from_sky(std::uint32_t p) const {
+    if (options_.ao && layout_.albedo)
+      return three(layout_.ao_reflected(), p) /
+             (double{layout_.unit_scale} * options_.ao_rays * spp(p));
+    return albedo(p) * (ao(p) - (1.0 - hits(p) / spp(p)));
+  }
+  [[nodiscard]] V3d from_lights(const std::vector<std::size_t>& lights, std::uint32_t p) const {
+    return (layout_.albedo ? light_.reflected(lights, p) : light_.sum(lights, p)) /
+           std::numbers::pi;
+  }
+
   const Sums& sums_;
   const TracedPicture& picture_;
   const FilmLayout& layout_;
@@ -387,9 +289,10 @@ std::vector<Plane> develop(const TracedPicture& picture, const FilmLayout& layou
   const LightPlanes light(sums, picture, layout, options, lights);
   statistics.ambient = ambient_of(options, lights, light);
   Layers layers(sums, picture, layout, options, light);
-  layers.add_beauty(statistics.ambient);
+  const std::vector<LightLayer> of_lights = light_layers(lights);
+  layers.add_beauty(statistics.ambient, of_lights);
   if (options.ao) layers.add_ao();
-  layers.add_lights(light_layers(lights));
+  layers.add_lights(of_lights);
   layers.add_surface();
   layers.add_sampling(light_names(lights), statistics);
   count_visits(sums, picture, layout, options, lights, statistics);

@@ -37,4 +37,10 @@ std::vector<LightLayer> light_layers(const std::vector<Light>& lights) {
   return layers;
 }
 
+std::string ambient_layer_name(const std::vector<LightLayer>& layers) {
+  std::set<std::string> taken;
+  for (const LightLayer& layer : layers) taken.insert(layer.name);
+  return name_that_is_free("ambient", taken);
+}
+
 }  // namespace dapple

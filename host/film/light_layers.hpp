@@ -19,6 +19,9 @@ struct LightLayer {
 /// light_names(); a group whose name is taken by such a light gets a number, as lights do.
 std::vector<LightLayer> light_layers(const std::vector<Light>& lights);
 
+/// The name beside them of what the sky of AO gives: "ambient", with a number if a light has it.
+std::string ambient_layer_name(const std::vector<LightLayer>& layers);
+
 /// Sums over the lights of each layer: values[light] is anything with begin(), end() and +=.
 template <class Values>
 std::vector<Values> sums_of_layers(const std::vector<LightLayer>& layers,

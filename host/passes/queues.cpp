@@ -20,7 +20,8 @@ std::size_t hit_records(std::size_t samples) {
 
 std::size_t Queues::bytes() const {
   return work.bytes() + rays.bytes() + points.bytes() + sample_hits.bytes() + active.bytes() +
-         active_count.bytes() + group_hits.bytes() + occlusions.bytes() + order.bytes();
+         active_count.bytes() + group_hits.bytes() + occlusions.bytes() + albedo.bytes() +
+         order.bytes();
 }
 
 Queues make_queues(DeviceContext& context, std::size_t samples, std::size_t rays_per_sample) {
@@ -33,6 +34,7 @@ Queues make_queues(DeviceContext& context, std::size_t samples, std::size_t rays
   queues.group_hits = context.allocate(
       ceil_div<std::size_t>(hit_records(samples), DAPPLE_SCAN_ITEMS) * sizeof(uint));
   queues.occlusions = context.allocate(samples * rays_per_sample * sizeof(Occlusion));
+  queues.albedo = context.allocate(0);
   if (traces_scalar(context))
     queues.order = context.allocate(samples * rays_per_sample * sizeof(uint));
   return queues;

@@ -29,6 +29,7 @@ struct Queues {
   Buffer active_count;  ///< uint
   Buffer group_hits;    ///< uint: hits in the records of each work-group that compacts
   Buffer occlusions;    ///< Occlusion, one a ray
+  Buffer albedo;        ///< SampleAlbedo, one a camera sample; empty unless the caller allocates it
   Buffer order;         ///< uint: the rays as scalar kernels order them; may be empty
   [[nodiscard]] std::size_t bytes() const;
 };

@@ -27,7 +27,7 @@ void shade(DeviceContext& context, const DeviceBuffers& scene, const Queues& que
   context.launch(shading_kernel(context), "shading", params.slice.pixel_count * items_of_pixel,
                  {scene.nodes, scene.blocks, scene.textured, scene.instances, scene.normals,
                   scene.color_words, scene.color_materials, scene.color_texels, queues.work,
-                  queues.points, queues.sample_hits, film.sums, shading},
+                  queues.points, queues.sample_hits, queues.albedo, film.sums, shading},
                  kRayGroup);
 }
 

@@ -50,6 +50,8 @@ class PictureTracer {
           samples_of_slice(device.info(), options, light_count_, rays, layout.pixels);
     queues_ = make_queues(context_, state_.slice_samples, rays);
     queues_.work = context_.allocate(layout.pixels * sizeof(PixelWork));
+    if (layout.albedo)
+      queues_.albedo = context_.allocate(state_.slice_samples * sizeof(SampleAlbedo));
     film_.sums = context_.allocate_zeros(layout.sum_bytes());
     film_.squares = context_.allocate_zeros(layout.square_bytes());
     if (has_bias(options) && options.report_bias > 0) {
@@ -322,6 +324,7 @@ class PictureTracer {
 
   void trace_side(const Side& side, std::uint32_t hits) {
     resolve_.backs = side.is_back ? 1 : 0;
+    resolve_.albedo = layout_.albedo && !side.is_back ? 1 : 0;
     if (options_.ao) trace_ao(side, hits);
     for (uint light = 0; light < light_count_; ++light)
       if (!scene_.dark_lights[light]) trace_light(side, light, hits);

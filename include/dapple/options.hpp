@@ -123,7 +123,8 @@ struct RenderOptions {
   bool ao = true;      ///< make the AO pass
   bool light = true;   ///< make the light passes
   bool albedo = true;  ///< make the layer of colours; SceneOptions::colors reads them
-  bool back = false;   ///< make layers of what reaches the other side of surfaces
+  bool beauty = false;  ///< make layers of what each light adds to RGB
+  bool back = false;    ///< make layers of what reaches the other side of surfaces
   /// With `back`: one in so many samples is traced on that side, too, a power of two in [1, 64].
   /// With the default a render takes about 1.1 times as long, and layers of the other side have
   /// 4 times the noise of those in front, more at edges; with 1 up to 1.7 times, the same noise.

@@ -1,8 +1,6 @@
 /* The resolve kernels: add camera samples, AO and lights to the film. In: the queues of a slice. Out: film
    sums, in the planes of film_planes.h, and squares, see film.clh. */
 #include "film/film.clh"
-#include "vectors/lanes.clh"
-#include "geometry/scene.clh"
 
 /* A SurfacePoint in fixed point: position (3), depth, normal (3), one hit. Depth and hit replace the point's
    t and offset. */
@@ -53,42 +51,47 @@ __kernel void resolve_surface(__global const PixelWork* work, __global const Sur
 /* Squares: of occlusion, which is 0 where samples missed. A ray of weight 0 is hidden, any other has
    weight 1. */
 __kernel void resolve_ao(__global const PixelWork* work, __global const SampleHits* sample_hits,
-                         __global const Ray* rays,
-                         __global const Occlusion* occlusions, __global long* film,
+                         __global const Ray* rays, __global const Occlusion* occlusions,
+                         __global const SampleAlbedo* albedos, __global long* film,
                          __global float* squares, ResolveParams params) {
   const uint local_pixel = get_global_id(0);
   if (local_pixel >= params.slice.pixel_count) return;
   const uint begin = local_pixel * params.slice.sample_count;
   if (!any_sample_hit(sample_hits, begin, begin + params.slice.sample_count)) return;
   long8 sums = (long8)(0);
+  long visits = 0, tests = 0;
   Batches batches = no_batches();
-  const float inverse_rays = 1.0f / params.rays, of_unit = params.scale;
-  const float8 scale = (float8)(of_unit, of_unit, of_unit, of_unit, 1.0f, 1.0f, 1.0f, 1.0f);
+  const float inverse_rays = 1.0f / params.rays;
   uint ray = sample_slot(sample_hits, begin) * params.rays;
   for (uint s = 0; s < params.slice.sample_count; ++s) {
     float value = 0.0f;
-    const uint end = ray + (sample_hit(sample_hits, begin + s) ? params.rays : 0u);
+    const bool hit = sample_hit(sample_hits, begin + s);
+    const float3 albedo = sample_albedo(albedos, params, begin + s, hit);
+    const uint end = ray + (hit ? params.rays : 0u);
     for (; ray < end; ++ray) {
       const Occlusion found = occlusions[ray];
       const float seen = found.transmittance * rays[ray].weight;
       value += (1.0f - seen) * inverse_rays;
       __global const float* direction = rays[ray].direction;
-      const float visits = visits_of(found.visits), tests = tests_of(found.visits);
-      sums += fixed_points((float8)(seen, seen * direction[0], seen * direction[1], seen * direction[2], visits, tests,
-                                    0.0f, 0.0f) *
-                           scale);
+      const float8 factors =
+          (float8)(1.0f, direction[0], direction[1], direction[2], albedo.x, albedo.y, albedo.z, 0.0f);
+      sums += fixed_points(seen * params.scale * factors);
+      visits += visits_of(found.visits);
+      tests += tests_of(found.visits);
     }
     add_to_batch(&batches, s, value);
   }
   const FilmPixel pixel = film_pixel(work, params, local_pixel);
   add_squares(squares, params, pixel, &batches);
-  add_to_planes(film, params, params.backs ? 1u : DAPPLE_AO_PLANES, pixel, sums);
+  add_to_planes(film, params, params.backs ? 1u : DAPPLE_AO_PLANES, pixel,
+                (long8)(sums.s0123, visits, tests, 0, 0));
+  if (params.albedo) add_color(film, params, DAPPLE_AO_PLANES, pixel, sums.s45674567);
 }
 
 /* Irradiances are those at radiance 1. */
 __kernel void resolve_light(__global const PixelWork* work, __global const SampleHits* sample_hits,
-                            __global const Ray* rays,
-                            __global const Occlusion* occlusions, __global long* film,
+                            __global const Ray* rays, __global const Occlusion* occlusions,
+                            __global const SampleAlbedo* albedos, __global long* film,
                             __global float* squares, ResolveParams params) {
   const uint local_pixel = get_global_id(0);
   if (local_pixel >= params.slice.pixel_count) return;
@@ -100,19 +103,24 @@ __kernel void resolve_light(__global const PixelWork* work, __global const Sampl
   uint ray = sample_slot(sample_hits, begin) * params.rays;
   for (uint s = 0; s < params.slice.sample_count; ++s) {
     float value = 0.0f;
-    const uint end = ray + (sample_hit(sample_hits, begin + s) ? params.rays : 0u);
+    const bool hit = sample_hit(sample_hits, begin + s);
+    const float3 albedo = sample_albedo(albedos, params, begin + s, hit);
+    const uint end = ray + (hit ? params.rays : 0u);
     for (; ray < end; ++ray) {
       const Occlusion found = occlusions[ray];
       const float weight = rays[ray].weight;
       value += weight * found.transmittance * inverse_rays;
-      const float open = fmin(weight * params.scale, DAPPLE_MOST_VALUE);
+      const float open = fmin(weight * params.scale, DAPPLE_MOST_VALUE), seen = open * found.transmittance;
       const float visits = visits_of(found.visits), tests = tests_of(found.visits);
-      sums += fixed_points((float8)(open * found.transmittance, open, visits, tests, 0.0f, 0.0f, 0.0f, 0.0f));
+      const float3 reflected = seen * albedo;
+      sums += fixed_points(
+          (float8)(seen, open, visits, tests, reflected.x, reflected.y, reflected.z, 0.0f));
       if (open > DAPPLE_SMALL_VALUE) sums = stop_at_most(sums);
     }
     add_to_batch(&batches, s, value);
   }
   const FilmPixel pixel = film_pixel(work, params, local_pixel);
   add_squares(squares, params, pixel, &batches);
-  add_to_planes(film, params, params.backs ? 1u : DAPPLE_LIGHT_PLANES, pixel, sums);
+  const uint planes = DAPPLE_LIGHT_PLANES + (params.albedo ? DAPPLE_REFLECTED_PLANES : 0u);
+  add_to_planes(film, params, params.backs ? 1u : planes, pixel, sums);
 }

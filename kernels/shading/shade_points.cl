@@ -80,7 +80,8 @@ inline void shade_group(Scene scene, const Shading* shading, uint lanes,
                    points);
 }
 
-/* Planes: shading normal (3), if there are any; albedo (3), if it is requested. */
+/* Planes: shading normal (3), if there are any; albedo (3), if it is requested, which `albedos` gets for each
+   sample, too. */
 __kernel void shade_points(__global const BvhNode* nodes, __global const TriangleBlock* blocks,
                            __global const TexturedTriangle* textured,
                            __global const InstanceRecord* instances,
@@ -88,7 +89,7 @@ __kernel void shade_points(__global const BvhNode* nodes, __global const Triangl
                            __global const ColorMaterial* color_materials,
                            __global const uint* color_texels, __global const PixelWork* work,
                            __global SurfacePoint* points, __global const SampleHits* sample_hits,
-                           __global long* film, ShadingParams params) {
+                           __global SampleAlbedo* albedos, __global long* film, ShadingParams params) {
   const uint local_pixel = get_global_id(0);
   const SliceParams slice = params.resolve.slice;
   if (local_pixel >= slice.pixel_count) return;
@@ -112,6 +113,9 @@ __kernel void shade_points(__global const BvhNode* nodes, __global const Triangl
     for (uint left = lanes; left; left &= left - 1u) {
       const uint lane = lowest_bit(left);
       const float3 n = load3(of_record[lane].normal);
+      if (shading.has_colors)
+        store3(albedos[r * DAPPLE_HIT_BITS + lane].color,
+               (float3)(albedo[0].f[lane], albedo[1].f[lane], albedo[2].f[lane]));
       sums += fixed_points((float8)(n.x, n.y, n.z, albedo[0].f[lane], albedo[1].f[lane],
                                     albedo[2].f[lane], 0.0f, 0.0f) *
                            params.resolve.scale);
@@ -124,8 +128,5 @@ __kernel void shade_points(__global const BvhNode* nodes, __global const Triangl
     add_to_planes(film, params.resolve, DAPPLE_NORMAL_PLANES, pixel, sums);
     plane = DAPPLE_NORMAL_PLANES;
   }
-  if (!shading.has_colors) return;
-  add_to_plane(film, params.resolve, plane, pixel, sums.s3);
-  add_to_plane(film, params.resolve, plane + 1u, pixel, sums.s4);
-  add_to_plane(film, params.resolve, plane + 2u, pixel, sums.s5);
+  if (shading.has_colors) add_color(film, params.resolve, plane, pixel, sums.s34534534);
 }

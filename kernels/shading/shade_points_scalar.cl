@@ -33,14 +33,16 @@ DAPPLE_INLINE float3 shade_hit(Scene scene, const Shading* shading, __global Sur
   return surface_color(scene, shading->colors, primitive, instance, triangle.at, point->area);
 }
 
-/* Normals and albedos in fixed point, of the samples of `of_pixel` that this item has. */
+/* Normals and albedos in fixed point, of the samples of `of_pixel` that this item has, whose `albedos` it sets. */
 DAPPLE_INLINE long8 shade_samples(Scene scene, const Shading* shading, ResolveParams params, uint of_pixel,
-                                  __global const SampleHits* sample_hits, __global SurfacePoint* points) {
+                                  __global const SampleHits* sample_hits, __global SurfacePoint* points,
+                                  __global SampleAlbedo* albedos) {
   const uint begin = of_pixel * params.slice.sample_count, end = begin + params.slice.sample_count;
   long8 sums = (long8)(0);
   for (uint s = begin + get_local_id(0) % DAPPLE_SHADING_ITEMS; s < end; s += DAPPLE_SHADING_ITEMS) {
     if (!sample_hit(sample_hits, s)) continue;
     const float3 albedo = shade_hit(scene, shading, points + s), n = load3(points[s].normal);
+    if (shading->has_colors) store3(albedos[s].color, albedo);
     sums += fixed_points((float8)(n.x, n.y, n.z, albedo.x, albedo.y, albedo.z, 0.0f, 0.0f) * params.scale);
   }
   return sums;
@@ -53,7 +55,8 @@ void shade_points_scalar(__global const BvhNode* nodes, __global const TriangleB
                          __global const CornerNormals* normals, __global const uint* color_words,
                          __global const ColorMaterial* color_materials, __global const uint* color_texels,
                          __global const PixelWork* work, __global SurfacePoint* points,
-                         __global const SampleHits* sample_hits, __global long* film, ShadingParams params) {
+                         __global const SampleHits* sample_hits, __global SampleAlbedo* albedos,
+                         __global long* film, ShadingParams params) {
   __local long sums[DAPPLE_SHADING_GROUP * DAPPLE_SHADED_PLANES];
   const uint in_group = get_local_id(0), first = get_group_id(0) * DAPPLE_SHADING_PIXELS;
   const Scene scene = {nodes, blocks, 0, textured, 0, 0, instances};
@@ -64,7 +67,7 @@ void shade_points_scalar(__global const BvhNode* nodes, __global const TriangleB
   PlaneSums own;
   own.v = (long8)(0);
   if (own_pixel < params.resolve.slice.pixel_count)
-    own.v = shade_samples(scene, &shading, params.resolve, own_pixel, sample_hits, points);
+    own.v = shade_samples(scene, &shading, params.resolve, own_pixel, sample_hits, points, albedos);
   for (uint plane = 0; plane < DAPPLE_SHADED_PLANES; ++plane)
     sums[in_group * DAPPLE_SHADED_PLANES + plane] = own.plane[plane];
   barrier(CLK_LOCAL_MEM_FENCE);

@@ -74,6 +74,7 @@ class RenderOptions(TypedDict, total=False):
     ao: bool
     light: bool
     albedo: bool
+    beauty: bool
     back: bool
     back_every: int
     deep: bool

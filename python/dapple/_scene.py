@@ -348,8 +348,8 @@ class Scene:
         Size and samples: width (960), height (540), crop=(x0, y0, x1, y1) inclusive, pixels; spp (16),
         target_rmse, target_error in [0, 1] with max_spp; camera_splitting, ao_rays, light_rays.
         View: camera by name, or look=(from, at, up) in metres with fov_degrees; aperture, focus_distance,
-        metres. Layers: ao, light, albedo (True), back with back_every, deep, visits, crypto_object,
-        crypto_material (False). Rays: estimator, footprint (4), roulette, max_bias, report_bias,
+        metres. Layers: ao, light, albedo (True), beauty, back with back_every, deep, visits,
+        crypto_object, crypto_material (False). Rays: estimator, footprint (4), roulette, max_bias, report_bias,
         normals, packets, seed; ao_distance (metres), ao_falloff. Scene: opacity={"leaf": 0.85},
         ground, ambient (radiance of a uniform sky in RGBA, W/(sr m^2); None: chosen); device, cache.
 

@@ -74,6 +74,7 @@ void bind_render_options(nb::module_& module) {
       .def_rw("ao", &RenderOptions::ao)
       .def_rw("light", &RenderOptions::light)
       .def_rw("albedo", &RenderOptions::albedo)
+      .def_rw("beauty", &RenderOptions::beauty)
       .def_rw("back", &RenderOptions::back)
       .def_rw("back_every", &RenderOptions::back_every)
       .def_rw("deep", &RenderOptions::deep)

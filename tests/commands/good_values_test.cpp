@@ -96,7 +96,7 @@ TEST_F(GoodValues, AreTestedOfEveryCommand) {
 /// Options of `dapple render` that `dapple plan` takes too.
 const std::vector<std::string> kPictures = {
     "-o a.exr --exposure -1.5 --background 0.1,0.2,0.3 --png a.png --half ao,light.sun "
-    "--compression piz --crop 2,1,9,7 --seed 7 --passes ao,light,albedo,back --back-every 4 "
+    "--compression piz --crop 2,1,9,7 --seed 7 --passes ao,light,albedo,beauty,back --back-every 4 "
     "--normals geometric --cryptomatte object,material --stats-json a.json -q",
     "-o b.exr --exposure auto --background none --png b.png --compression dwaa --multipart "
     "--half all --camera-splitting 2 --ao-rays 3 --light-rays 2 --footprint 2 --max-bias 0.05 "

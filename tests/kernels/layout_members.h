@@ -47,6 +47,7 @@
   MEMBER(SurfacePoint, position) MEMBER(SurfacePoint, t) MEMBER(SurfacePoint, normal)        \
   MEMBER(SurfacePoint, offset) MEMBER(SurfacePoint, area) MEMBER(SurfacePoint, pixel)        \
   MEMBER(SurfacePoint, sample) MEMBER(SurfacePoint, visits)                                  \
+  STRUCT(SampleAlbedo) MEMBER(SampleAlbedo, color)                                            \
   STRUCT(LightRecord)                                                                        \
   MEMBER(LightRecord, position) MEMBER(LightRecord, radius) MEMBER(LightRecord, direction)   \
   MEMBER(LightRecord, one_minus_cos) MEMBER(LightRecord, edge_u) MEMBER(LightRecord, area)   \
@@ -99,7 +100,8 @@
   MEMBER(ResolveParams, slice) MEMBER(ResolveParams, film_pixels)                            \
   MEMBER(ResolveParams, first_sample)                                                        \
   MEMBER(ResolveParams, plane) MEMBER(ResolveParams, rays) MEMBER(ResolveParams, squares)    \
-  MEMBER(ResolveParams, backs) MEMBER(ResolveParams, splitting_bits)                         \
+  MEMBER(ResolveParams, backs) MEMBER(ResolveParams, albedo)                                 \
+  MEMBER(ResolveParams, splitting_bits)                                                      \
   MEMBER(ResolveParams, scale)                                                               \
   MEMBER(ResolveParams, position_scale) MEMBER(ResolveParams, depth_scale)                   \
   MEMBER(ResolveParams, axis) MEMBER(ResolveParams, eye)                           \

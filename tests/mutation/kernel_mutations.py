@@ -298,4 +298,9 @@ MUTATIONS = [
         "i < get_group_id(0); i += DAPPLE_SCAN_ITEMS)",
         "i <= get_group_id(0); i += DAPPLE_SCAN_ITEMS)",
         r"^ScalarKernels\."),
+    Mutation(
+        "light-times-the-albedo-of-the-first-sample", "kernels/film/film.clh",
+        "? load3(albedos[sample].color)",
+        "? load3(albedos[0].color)",
+        r"^Beauty\."),
 ]

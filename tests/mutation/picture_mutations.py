@@ -25,8 +25,8 @@ MUTATIONS = [
         "",
         r"^ResumeContent\."),
     Mutation(
-        "radiance-of-lights-ignored", "host/film/layers.cpp",
-        "return V3d(lights_[light].radiance) * sum *",
+        "radiance-of-lights-ignored", "host/film/light_planes.cpp",
+        "return V3d(lights_[range.light].radiance) * sum *",
         "return sum *",
         r"^(Light|LightLayers|Beauty)\."),
     Mutation(
@@ -171,7 +171,7 @@ MUTATIONS = [
         "std::all_of(entries.begin(), entries.end(), begins_group) ? 0 : 0 * last;",
         r"^(BackSlices|BackSlicesOfDevice)\."),
     Mutation(
-        "backs-divided-by-all-samples", "host/film/layers.cpp",
+        "backs-divided-by-all-samples", "host/film/sums/sum_values.hpp",
         "  return std::max(1.0, sums.at(layout.back_samples, pixel));",
         "  return std::max(1.0, 8 * sums.at(layout.back_samples, pixel));",
         r"^Back\."),

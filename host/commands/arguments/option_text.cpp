@@ -221,8 +221,8 @@ Packets parse_packets(const std::string& text) {
 }
 
 void parse_passes(const std::string& text, RenderOptions& options) {
-  options.ao = options.light = options.albedo = options.back = options.visits = false;
-  options.motion = false;
+  options.ao = options.light = options.albedo = options.beauty = false;
+  options.back = options.visits = options.motion = false;
   for (const std::string& pass : split(text, ',')) {
     if (pass == "ao") {
       options.ao = true;
@@ -230,6 +230,8 @@ void parse_passes(const std::string& text, RenderOptions& options) {
       options.light = true;
     } else if (pass == "albedo") {
       options.albedo = true;
+    } else if (pass == "beauty") {
+      options.beauty = true;
     } else if (pass == "back") {
       options.back = true;
     } else if (pass == "visits") {
@@ -239,7 +241,8 @@ void parse_passes(const std::string& text, RenderOptions& options) {
     } else {
       throw Error(
           ErrorKind::usage,
-          fmt::format("--passes {}: there are ao, light, albedo, back, motion and visits", text));
+          fmt::format("--passes {}: there are ao, light, albedo, beauty, back, motion and visits",
+                      text));
     }
   }
   if (options.back && !options.ao && !options.light)

@@ -249,7 +249,8 @@ Run add_render_command(CLI::App& app) {
       "  dapple render tree.glb --spp 1024 -o tree.exr --checkpoint tree.ckpt --resume tree.ckpt\n"
       "  dapple render \"scene:tree?wind=1\" --frames 0-47 --fps 24 -o out.####.exr"
       "\n\n"
-      "Layers: R,G,B,A; albedo; ao; bent; light.NAME; ao.back, light.NAME.back; N; Ng; P; Z; "
+      "Layers: R,G,B,A; albedo; beauty.NAME; ao; bent; light.NAME; ao.back, light.NAME.back; N; "
+      "Ng; P; Z; "
       "motion; "
       "crypto_object, crypto_material; samples; error; visits. Where rays miss, ao is 1.");
   return [a] { run_render(*a); };

@@ -64,8 +64,9 @@ void add_sampling_options(CLI::App& app, RenderArguments& a) {
 void add_layer_options(CLI::App& app, RenderArguments& a) {
   RenderOptions& o = a.options;
   app.add_option("--passes", a.passes,
-                 "With commas between: ao, light, albedo (colours), back (AO and light of the side "
-                 "that faces away from the camera), motion (image motion until the next frame, in "
+                 "With commas between: ao, light, albedo (colours), beauty (what the sky and each "
+                 "light add to RGB), back (AO and light of the side that faces away from the "
+                 "camera), motion (image motion until the next frame, in "
                  "pixels), visits (BVH nodes and triangles that rays tested)")
       ->capture_default_str();
   app.add_option("--back-every", o.back_every,
@@ -315,8 +316,8 @@ double shutter_seconds(const RenderArguments& a, double seconds, int k) {
 
 /// A layer that pictures have, or all below one: "light", "light.sun".
 void check_half_layer(const std::string& name) {
-  static const std::vector<std::string> kLayers{"all",   "RGBA", "albedo", "ao",    "bent",
-                                                "light", "N",    "Ng",     "error", "visits"};
+  static const std::vector<std::string> kLayers{
+      "all", "RGBA", "albedo", "beauty", "ao", "bent", "light", "N", "Ng", "error", "visits"};
   for (const std::string& layer : kLayers)
     if (name == layer || name.starts_with(layer + ".")) return;
   throw Error(ErrorKind::usage,

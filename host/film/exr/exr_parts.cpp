@@ -20,7 +20,8 @@ bool must_stay_float(const std::string& layer) {
 }
 
 bool is_color(const std::string& layer) {
-  return layer == kMainLayer || layer == "albedo" || layer.starts_with("light.");
+  return layer == kMainLayer || layer == "albedo" || layer.starts_with("light.") ||
+         layer.starts_with("beauty.");
 }
 
 /// Whether `name` means the layer: "light" means all of "light.NAME".

@@ -83,7 +83,8 @@ Tone tone_of(const Film& film, const std::string& layer, const Planes& planes) {
     const float span = range.high - range.low;
     return {range.low, span > 0 ? 1 / span : 1.0f, false};
   }
-  if (layer.starts_with("light.")) return {0.0f, range.high > 0 ? 1 / range.high : 1.0f, true};
+  if (layer.starts_with("light.") || layer.starts_with("beauty."))
+    return {0.0f, range.high > 0 ? 1 / range.high : 1.0f, true};
   return {};
 }
 

@@ -108,15 +108,16 @@ FilmLayout::FilmLayout(const PixelRect& crop, const RenderOptions& options,
     : width(static_cast<std::uint32_t>(crop.width())),
       pixels(width * static_cast<std::uint32_t>(crop.height())),
       plane_count(DAPPLE_SURFACE_PLANES) {
+  const std::uint32_t reflected = options.albedo ? DAPPLE_REFLECTED_PLANES : 0;
   if (options.ao) {
     ao = plane_count;
-    plane_count += DAPPLE_AO_PLANES;
+    plane_count += DAPPLE_AO_PLANES + reflected;
     squares += 2;
   }
   for (const Light& light : scene_lights) {
     lights.push_back({plane_count, light.kind == LightKind::dome ? DAPPLE_DOME_CHANNELS : 1u,
                       scales.lights.at(lights.size())});
-    plane_count += lights.back().count();
+    plane_count = lights.back().reflected() + reflected;
     squares += 2;
   }
   for (LightLayer& layer : light_layers(scene_lights)) {

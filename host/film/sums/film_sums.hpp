@@ -15,14 +15,14 @@
 namespace dapple {
 
 /// A light's planes: irradiance with occlusion, then without, each of 1 channel (3 for a dome);
-/// then node visits and triangle tests.
+/// then node visits and triangle tests; then, with albedo, what is reflected (3).
 struct LightPlaneRange {
   std::uint32_t first = 0;
   std::uint32_t channels = 1;
   float scale = 0;  ///< for irradiance at radiance 1
   [[nodiscard]] std::uint32_t unoccluded() const { return first + channels; }
   [[nodiscard]] std::uint32_t visits() const { return first + 2 * channels; }
-  [[nodiscard]] constexpr std::uint32_t count() const { return 2 * channels + 2; }
+  [[nodiscard]] std::uint32_t reflected() const { return visits() + 2; }
 };
 
 /// Powers of two that positions, depths and irradiances are multiplied by.
@@ -70,6 +70,8 @@ struct FilmLayout {
   /// The first plane of the shading pass; 0: there is no such pass.
   [[nodiscard]] std::uint32_t shading() const { return normals ? normals : albedo; }
   [[nodiscard]] std::uint32_t ao_visits() const { return ao + DAPPLE_PLANE_AO_VISITS; }
+  /// The first of three planes of transmittance times albedo; there with `albedo` and `ao`.
+  [[nodiscard]] std::uint32_t ao_reflected() const { return ao + DAPPLE_AO_PLANES; }
   /// The plane of a light's squared means of sample batches. The next plane is for pairs of
   /// batches. AO's planes are 0 and 1.
   [[nodiscard]] std::uint32_t light_squares(std::size_t light) const {

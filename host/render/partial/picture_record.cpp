@@ -30,6 +30,7 @@ json options_json(const RenderOptions& o) {
   json out = {{"ao", o.ao},
               {"light", o.light},
               {"albedo", o.albedo},
+              {"beauty", o.beauty},
               {"back", o.back},
               {"visits", o.visits},
               {"motion", o.motion},
@@ -47,6 +48,7 @@ RenderOptions options_of(const json& about) {
   o.ao = about.at("ao").get<bool>();
   o.light = about.at("light").get<bool>();
   o.albedo = about.at("albedo").get<bool>();
+  o.beauty = about.at("beauty").get<bool>();
   o.back = about.at("back").get<bool>();
   o.visits = about.at("visits").get<bool>();
   o.motion = about.at("motion").get<bool>();

@@ -14,7 +14,7 @@
 #define DAPPLE_PLANE_CAMERA_TESTS 9u  /* of triangles and segments */
 #define DAPPLE_SURFACE_PLANES 10u
 
-/* Of AO: transmittance, unoccluded directions (3). Backs have the first one alone. */
+/* Of AO: transmittance, unoccluded directions (3), visits, tests. Backs have the first one alone. */
 #define DAPPLE_PLANE_AO_BENT 1u
 #define DAPPLE_PLANE_AO_VISITS 4u /* and tests */
 #define DAPPLE_AO_PLANES 6u
@@ -24,6 +24,10 @@
 #define DAPPLE_LIGHT_PLANES 4u
 #define DAPPLE_DOME_PLANES 8u
 #define DAPPLE_DOME_CHANNELS 3u
+
+/* After those of AO, and of each light: the transmittance or irradiance of each sample times its albedo, in red,
+   green and blue. Pictures with albedo have them, backs do not. */
+#define DAPPLE_REFLECTED_PLANES 3u
 
 /* Of backs, before those of their passes: samples that began at a back, and those that hit something. Of
    shading normals and of albedo, which not every picture has. */

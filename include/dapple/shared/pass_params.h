@@ -137,6 +137,7 @@ typedef struct ResolveParams {
   uint rays;           /* rays a sample */
   uint squares;        /* first of two planes of squares to add to */
   uint backs;          /* 1: of AO and lights only what arrives is added, and no squares */
+  uint albedo;         /* 1: DAPPLE_REFLECTED_PLANES follow */
   uint splitting_bits; /* as in CameraParams */
   float scale;         /* of values in [0,1] */
   float position_scale;

@@ -92,12 +92,18 @@ typedef struct SurfacePoint {
   uint visits;     /* as in Occlusion, of closest_hits(); 0 of camera rays */
 } SurfacePoint;
 
+/* Colour of the surface that a sample hit, linear, [0,1]. */
+typedef struct SampleAlbedo {
+  float color[3];
+} SampleAlbedo;
+
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(Ray) == 48);
 static_assert(sizeof(Occlusion) == 8);
 static_assert(sizeof(RaySums) == 20);
 static_assert(sizeof(SampleHits) == 16);
 static_assert(sizeof(SurfacePoint) == 48);
+static_assert(sizeof(SampleAlbedo) == 12);
 }  // namespace dapple
 #endif
 

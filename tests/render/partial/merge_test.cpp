@@ -25,7 +25,7 @@ RenderOptions small_picture() {
   options.height = 36;
   options.spp = 11;
   options.ao_rays = 40;  // a shard has several slices
-  options.back = true;
+  options.back = options.beauty = true;
   options.camera_splitting = 2;
   options.cryptomattes = {true, true};
   options.report_bias = 0;  // a merged picture has no report in its metadata
