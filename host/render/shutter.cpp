@@ -29,6 +29,7 @@ void check_motion(const Shutter& shutter, const RenderOptions& options) {
 
 void check_shutter(const Shutter& shutter, const RenderOptions& options,
                    const RenderControl& control) {
+  if (!shutter.scene_at) refuse("render_shutter() needs a function that gives the scenes");
   check_motion(shutter, options);
   if (options.deep && !(control.checkpoint.empty() && control.resume.empty()))
     refuse("--checkpoint and --resume do not go with --deep");

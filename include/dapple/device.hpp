@@ -40,6 +40,9 @@ class Device {
   /// the best of all if `name` is empty. Throws Error device, which lists the devices.
   explicit Device(const std::string& name = "", const std::string& kernel_dir = "",
                   Packets packets = Packets::automatic);
+  Device(const Device&) = default;  // in place of moves, too: no device is without a context
+  Device& operator=(const Device&) = default;
+  ~Device() = default;
 
   [[nodiscard]] const DeviceInfo& info() const;
   /// Keeps the kernels that were compiled so far for later processes. Otherwise that happens when

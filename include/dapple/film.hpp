@@ -104,11 +104,15 @@ struct PngOptions {
   V3f color{0, 0, 0};  ///< linear, [0,1]; on the display, without exposure
 };
 
+/// Throws Error usage, which names the command line's flag, for an exposure that is not a number
+/// from -100 to 100, a background that is no enumerator, and a color outside [0,1].
+void validate(const PngOptions& options);
+
 /// Writes an 8-bit sRGB picture of the data window's size: of RGBA, exposed, tone mapped, over a
 /// background; or of `layer` if it is not empty ("ao", "N", "light.key", ...). Values of layers are
 /// clamped to [0,1]. N (from [-1,1]) and Z, P (from their finite range) are mapped linearly; lights
-/// are divided by their largest value. Throws Error usage if there is no such layer, otherwise
-/// failed.
+/// are divided by their largest value. Throws Error usage if there is no such layer and as
+/// validate(), otherwise failed.
 void write_png(const Film& film, const std::string& path, const std::string& layer = "",
                const PngOptions& options = {});
 

@@ -279,6 +279,20 @@ TEST_F(Png, MissingLayersAreRefusedWithTheFilmsChannels) {
   EXPECT_EQ(files_in_folder(), 0U);
 }
 
+TEST_F(Png, ExposuresBackgroundsAndColoursOutsideTheirRangesAreRefused) {
+  const Film film = row_film({{"R", {1}}, {"G", {1}}, {"B", {1}}, {"A", {1}}});
+  for (const PngOptions& options :
+       {PngOptions{kNan, Background::sky, V3f(0)}, PngOptions{kInfinity, Background::sky, V3f(0)},
+        PngOptions{-101.0f, Background::sky, V3f(0)},
+        PngOptions{0.0f, static_cast<Background>(3), V3f(0)},
+        PngOptions{0.0f, Background::color, V3f(0, kNan, 0)},
+        PngOptions{0.0f, Background::color, V3f(0, 0, 1.5f)}}) {
+    const Error error = error_of([&] { write_png(film, path("a.png"), "", options); });
+    EXPECT_EQ(error.kind(), ErrorKind::usage) << error.what();
+  }
+  EXPECT_EQ(files_in_folder(), 0U);
+}
+
 TEST_F(Png, FilmsThatAreNotWholeAreRefused) {
   Film film = row_film({{"ao", {1, 1}}});
   film.planes[0].pixels.pop_back();

@@ -279,6 +279,7 @@ TEST(Shutter, TargetsCheckpointsGroundsAndTooManyMomentsAreRefused) {
   expect_refused([](RenderOptions&, RenderControl& c) { c.checkpoint = "a.ckpt"; }, 2);
   expect_refused([](RenderOptions&, RenderControl&) {}, 9);
   expect_refused([](RenderOptions&, RenderControl&) {}, 0);
+  EXPECT_THROW(Renderer().render_shutter({}, 2, small_picture(8)), Error) << "without scenes";
 }
 
 TEST(Shutter, LightsThatComeWhileItIsOpenAreRefused) {

@@ -178,15 +178,9 @@ double parse_seconds(const std::string& flag, const std::string& text) {
 }
 
 PngOptions parse_png_options(const std::string& exposure, const std::string& background) {
-  constexpr float kMaxStops = 100;
   PngOptions options;
-  if (exposure != "auto") {
-    options.exposure = parse_number<float>("--exposure", exposure);
-    if (!(std::abs(*options.exposure) <= kMaxStops)) {
-      throw Error(ErrorKind::usage, fmt::format("--exposure {}: it is auto, or from -{:g} to {:g}",
-                                                exposure, kMaxStops, kMaxStops));
-    }
-  }
+  if (exposure != "auto") options.exposure = parse_number<float>("--exposure", exposure);
+  validate(options);
   if (background == "sky") return options;
   options.background = PngOptions::Background::none;
   if (background == "none") return options;
@@ -196,11 +190,7 @@ PngOptions parse_png_options(const std::string& exposure, const std::string& bac
                 fmt::format("--background {}: it is sky, none or R,G,B from 0 to 1", background));
   const auto color = parse_numbers<float>("--background", background, 3, "R,G,B");
   options.color = V3f(color[0], color[1], color[2]);
-  for (int channel = 0; channel < 3; ++channel) {
-    if (options.color[channel] >= 0 && options.color[channel] <= 1) continue;
-    throw Error(ErrorKind::usage,
-                fmt::format("--background {}: it is sky, none or R,G,B from 0 to 1", background));
-  }
+  validate(options);
   return options;
 }
 

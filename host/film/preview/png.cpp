@@ -6,6 +6,7 @@
 #define STBI_WRITE_NO_STDIO
 #include "film/preview/png.hpp"
 
+#include <fmt/format.h>
 #include <stb_image_write.h>
 
 #include <algorithm>
@@ -23,6 +24,7 @@
 #include "film/preview/heat_color.hpp"
 #include "film/preview/pixel_elevation.hpp"
 #include "film/preview/tone_map.hpp"
+#include "scene/check/enumerator.hpp"
 #include "scene/images/color.hpp"
 
 namespace dapple {
@@ -217,8 +219,26 @@ std::string encode_grey16_png(int width, int height, const std::vector<std::uint
          png_chunk("IEND", {});
 }
 
+void validate(const PngOptions& options) {
+  constexpr float kMaxStops = 100;
+  using Background = PngOptions::Background;
+  const auto refuse = [](const std::string& what) { throw Error(ErrorKind::usage, what); };
+  if (options.exposure && !(std::fabs(*options.exposure) <= kMaxStops))
+    refuse(fmt::format("--exposure {}: it is auto, or from -{:g} to {:g}", *options.exposure,
+                       kMaxStops, kMaxStops));
+  if (!is_enumerator(options.background, Background::color))
+    refuse(fmt::format("--background has no value {}", static_cast<int>(options.background)));
+  if (options.background != Background::color) return;
+  const V3f& color = options.color;
+  for (int channel = 0; channel < 3; ++channel)
+    if (!(color[channel] >= 0 && color[channel] <= 1))
+      refuse(fmt::format("--background {},{},{}: it is sky, none or R,G,B from 0 to 1", color.x,
+                         color.y, color.z));
+}
+
 void write_png(const Film& film, const std::string& path, const std::string& layer,
                const PngOptions& options) {
+  validate(options);
   const std::string defect = film_defect(film);
   if (!defect.empty()) throw Error(ErrorKind::failed, "cannot write " + path + ": " + defect);
   const ByteImage image = layer.empty() ? main_picture(film, options)
