@@ -26,6 +26,7 @@ struct Layer {
 const std::vector<Layer>& layers() {
   static const std::vector<Layer> all = {
       {"albedo", [](RenderOptions&) {}, [](RenderOptions& o) { o.albedo = false; }},
+      {"beauty", [](RenderOptions& o) { o.beauty = true; }},
       {"object", [](RenderOptions& o) { o.cryptomattes.objects = true; }},
       {"mattes",
        [](RenderOptions& o) {
@@ -38,7 +39,7 @@ const std::vector<Layer>& layers() {
       {"all",
        [](RenderOptions& o) {
          o.cryptomattes = {true, true};
-         o.motion = o.back = true;
+         o.motion = o.back = o.beauty = true;
        },
        [](RenderOptions& o) {
          o.albedo = false;

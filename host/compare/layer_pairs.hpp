@@ -15,7 +15,9 @@ struct LayerPair {
   std::string name;
   std::vector<const Plane*> a, b;
 
-  [[nodiscard]] bool is_light() const { return name.starts_with("light."); }
+  [[nodiscard]] bool is_light() const {
+    return name.starts_with("light.") || name.starts_with("beauty.");
+  }
 };
 
 struct LayerMatch {

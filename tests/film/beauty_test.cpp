@@ -119,12 +119,25 @@ TEST(Beauty, OfOneColourIsTheProductOfAlbedoAndLight) {
   Scene scene = small_tree();
   for (Material& material : scene.materials) material.color = V3f(0.3f, 0.6f, 0.05f);
   scene.lights.push_back(sky());
+  scene.lights.push_back(sun_along({0.3f, -1, -0.4f}));
   for (const Packets packets : {Packets::automatic, Packets::scalar}) {
     options.packets = packets;
     options.albedo = true;
-    EXPECT_LE(worst_product(render(scene, options).film, {"rect", "sky"}), 1e-5);
+    EXPECT_LE(worst_product(render(scene, options).film, {"rect", "sky", "sun"}), 1e-5);
     options.albedo = false;  // white
-    EXPECT_LE(worst_product(render(scene, options).film, {"rect", "sky"}), 1e-5);
+    EXPECT_LE(worst_product(render(scene, options).film, {"rect", "sky", "sun"}), 1e-5);
+  }
+}
+
+// All rays of a sun bring the same, so that no noise hides a rounding.
+TEST(Beauty, OfDarkSurfacesInTheSunIsNotRounded) {
+  RenderOptions options = small_picture();
+  options.ambient = 0.0f;
+  Scene scene = small_tree();
+  scene.lights = {sun_along({0.3f, -1, -0.4f})};
+  for (const float dark : {0.01f, 0.0005f}) {
+    for (Material& material : scene.materials) material.color = V3f(dark, 0.7f * dark, 0.3f * dark);
+    EXPECT_LE(worst_product(render(scene, options).film, {"sun"}), 1e-5) << dark;
   }
 }
 

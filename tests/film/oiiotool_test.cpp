@@ -12,6 +12,7 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "film/exr/exr_parts.hpp"
@@ -62,7 +63,7 @@ class OiioTool : public ProgramRun {
   void render_tree(const std::string& options) const {
     const Outcome run = dapple(
         "render 'scene:tree?leaves=500' --width 16 --height 12 --spp 8 -q --report-bias 0 "
-        "--passes ao,light,albedo,back,visits --cryptomatte object,material " +
+        "--passes ao,light,albedo,beauty,back,visits --cryptomatte object,material " +
         options);
     ASSERT_EQ(run.code, 0) << run.err;
   }
@@ -133,6 +134,14 @@ TEST_F(OiioTool, RunsTheCommandsOfTheDocuments) {
   const std::vector<float> expected = read_exr(path("tree.exr")).find("A")->pixels;
   ASSERT_EQ(alpha.size(), expected.size());
   for (std::size_t p = 0; p < alpha.size(); ++p) EXPECT_NEAR(alpha[p], expected[p], 1e-5) << p;
+  const Film tree = read_exr(path("tree.exr")), evening = read_exr(path("evening.exr"));
+  for (const auto& [letter, dimmed] : {std::pair{"R", 0.5f}, {"G", 0.4f}, {"B", 0.3f}}) {
+    const std::vector<float>& sun = tree.find(std::string("beauty.sun.") + letter)->pixels;
+    const std::vector<float>& sky = tree.find(std::string("beauty.sky.") + letter)->pixels;
+    const std::vector<float>& both = evening.find(letter)->pixels;
+    for (std::size_t p = 0; p < both.size(); ++p)
+      EXPECT_NEAR(both[p], dimmed * sun[p] + sky[p], 1e-5) << letter << p;
+  }
 }
 
 TEST_F(OiioTool, NamesAllChannelsColoursFirstAndGivesTheirStatistics) {

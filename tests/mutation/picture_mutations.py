@@ -31,7 +31,7 @@ MUTATIONS = [
         r"^(Light|LightLayers|Beauty)\."),
     Mutation(
         "far-lights-in-coarse-steps", "host/film/sums/film_sums.cpp",
-        "constexpr int kSmallestBits = 12,",
+        "constexpr int kSmallestBits = 28,",
         "constexpr int kSmallestBits = 0,",
         r"^SmallLights\."),
     Mutation(

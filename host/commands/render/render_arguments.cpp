@@ -320,9 +320,10 @@ void check_half_layer(const std::string& name) {
       "all", "RGBA", "albedo", "beauty", "ao", "bent", "light", "N", "Ng", "error", "visits"};
   for (const std::string& layer : kLayers)
     if (name == layer || name.starts_with(layer + ".")) return;
-  throw Error(ErrorKind::usage,
-              fmt::format("--half {}: there is no such layer; there are {} and light.NAME", name,
-                          fmt::join(kLayers, ", ")));
+  throw Error(
+      ErrorKind::usage,
+      fmt::format("--half {}: there is no such layer; there are {}, light.NAME and beauty.NAME",
+                  name, fmt::join(kLayers, ", ")));
 }
 
 ExrFormat to_format(const RenderArguments& a) {

@@ -79,7 +79,7 @@ Irradiance irradiance_of(const LightRecord& light, const Box3f& bounds) {
 /// A power of two for which the smallest irradiance has `kSmallestBits` bits, and the largest
 /// `kLargestBits` at most, so that the sum of 2^19 rays fits 63 bits.
 float light_scale(const LightRecord& light, const Box3f& bounds) {
-  constexpr int kSmallestBits = 12, kLargestBits = 43, kLeast = 26, kMost = 100;
+  constexpr int kSmallestBits = 28, kLargestBits = 43, kLeast = 26, kMost = 100;
   const Irradiance irradiance = irradiance_of(light, bounds);
   int exponent = kLeast;
   if (irradiance.smallest > 0 && std::isfinite(irradiance.largest)) {

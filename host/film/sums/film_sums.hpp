@@ -31,9 +31,9 @@ struct FilmScales {
   std::vector<float> lights;
 };
 
-/// Returns the scales for a scene in `bounds` and its lights. A light of radiance 1 whose
-/// irradiance at the farthest point of `bounds` is small gets a scale for which that still has 12
-/// bits, if what it gives the nearest point does not become too large; others get 2^26.
+/// Returns the scales for a scene in `bounds` and its lights. The irradiance of a light of radiance
+/// 1 at the farthest point of `bounds` has 28 bits, so that what a dark surface reflects of it has
+/// enough, or fewer if what it gives the nearest point would become too large.
 FilmScales film_scales(const View& view, const Box3f& bounds, std::span<const LightRecord> lights);
 
 /// Lights that share a layer, and the luminances of their radiances.

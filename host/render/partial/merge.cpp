@@ -27,7 +27,7 @@ struct Part {
   std::vector<Piece> pieces;
   std::string device;
   int samples;
-  bool visits;
+  bool visits, beauty;
 };
 
 /// The file without its state.
@@ -45,8 +45,12 @@ Checkpoint describe(const std::string& path) {
 
 Part part_of(const std::string& path, Checkpoint about) {
   const PictureRecord& picture = about.picture;
-  return {path, std::move(about.pieces), std::move(about.device), picture.metadata.samples,
-          picture.options.visits};
+  return {path,
+          std::move(about.pieces),
+          std::move(about.device),
+          picture.metadata.samples,
+          picture.options.visits,
+          picture.options.beauty};
 }
 
 /// Whatever parts of one picture must agree in: all but their pixels, samples and devices.
@@ -66,7 +70,7 @@ Settings common_settings(const Checkpoint& about) {
     if (name != kAmbient && name != "footprint_spp") settings.emplace_back(name, value);
   nlohmann::json rest = to_json(picture);
   for (const char* own : {"crop", "metadata"}) rest.erase(own);
-  rest["options"].erase("visits");
+  for (const char* made_of_any_sums : {"visits", "beauty"}) rest["options"].erase(made_of_any_sums);
   using Json = nlohmann::json;
   const std::string text = rest.dump(-1, ' ', false, Json::error_handler_t::replace);
   settings.emplace_back("set of lights, objects or materials", text_checksum({text}));
@@ -98,7 +102,7 @@ struct Parts {
 Checkpoint read_again(const Part& part, const Settings& common, PartContents contents) {
   Checkpoint about = read_part(part.path, contents);
   if (about.pieces != part.pieces || about.picture.options.visits != part.visits ||
-      common_settings(about) != common)
+      about.picture.options.beauty != part.beauty || common_settings(about) != common)
     refuse(part.path + ": changed while it was merged");
   return about;
 }
@@ -182,6 +186,7 @@ Checkpoint describe_sum(const std::vector<Part>& parts, const Settings& common) 
   for (const Part& part : parts) {
     sum.pieces.insert(sum.pieces.end(), part.pieces.begin(), part.pieces.end());
     sum.picture.options.visits = sum.picture.options.visits || part.visits;
+    sum.picture.options.beauty = sum.picture.options.beauty || part.beauty;
     sum.picture.metadata.samples = std::max(sum.picture.metadata.samples, part.samples);
     add_devices(part.device, sum.device);
   }

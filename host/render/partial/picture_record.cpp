@@ -163,7 +163,7 @@ PictureRecord record_of(const View& view, const RenderOptions& options, const Fi
 
 void set_ambient(FilmMetadata& metadata, double ambient) {
   for (auto& [name, value] : metadata.settings)
-    if (name == kAmbient) value = fmt::format("{}", ambient);
+    if (name == kAmbient) value = fmt::format("{}", static_cast<float>(ambient));
 }
 
 json to_json(const PictureRecord& record) {

@@ -93,6 +93,24 @@ TEST_F(MergeParts, ShardsOfAnySizesInAnyOrderAreTheBitsOfOneRender) {
   }
 }
 
+TEST_F(MergeParts, LayersThatAreMadeOfTheSameSumsAreThereIfOnePartHasThem) {
+  RenderOptions options = small_picture();
+  options.beauty = false;
+  options.shard = {2, 2};
+  draw(options, path("without.dapple"));
+  options.visits = true;
+  options.beauty = true;
+  options.shard = {1, 2};
+  draw(options, path("with.dapple"));
+  for (const auto& [first, second] : {std::pair{"with", "without"}, {"without", "with"}}) {
+    const Film film =
+        merge_parts({path(std::string(first) + ".dapple"), path(std::string(second) + ".dapple")})
+            .result.film;
+    for (const char* channel : {"beauty.ambient.R", "beauty.sun.R", "visits.nodes"})
+      EXPECT_NE(film.find(channel), nullptr) << channel << ", " << first;
+  }
+}
+
 /// How much of what camera rays hit is hidden from behind.
 double hidden_from_behind(const Film& film) {
   const auto total = [&](const char* channel) {
