@@ -1,6 +1,7 @@
 // Chooses a command, and turns what goes wrong into one line and an exit code.
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -11,6 +12,7 @@
 #include <cstring>
 #include <new>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -52,6 +54,30 @@ void occupy_closed_descriptors() {
     // Writing to the standard output must fail, to the standard error it need not.
     (void)!open("/dev/null", descriptor == 2 ? O_WRONLY : O_RDONLY);
   }
+}
+
+/// Nobody reads what is printed any more, as after a lost connection. It goes nowhere from now on,
+/// and the work goes on: what it writes to files is wanted. A handler of SIGPIPE.
+void print_nowhere(int) {
+  const int error = errno;
+  for (const int descriptor : {STDOUT_FILENO, STDERR_FILENO}) {
+    pollfd output{descriptor, 0, 0};
+    if (poll(&output, 1, 0) != 1 || !(output.revents & POLLERR)) continue;
+    const int nowhere = open("/dev/null", O_WRONLY);
+    if (nowhere < 0) continue;
+    dup2(nowhere, descriptor);
+    close(nowhere);
+  }
+  errno = error;
+}
+
+/// What a standard library's failure means here.
+int report(const std::system_error& error) {
+  if (error.code() == std::errc::broken_pipe) return 0;  // print_nowhere()
+  if (error.code() != std::errc::resource_unavailable_try_again) return say(error.what());
+  return say(
+      "cannot start a thread: too many processes and threads run (ulimit -u, or the limit of a "
+      "container), or memory has run out");
 }
 
 int refuse(const CLI::App& app, const CLI::ParseError& error) {
@@ -126,6 +152,24 @@ int run(int argc, char** argv) {
   return dapple::interruption_code();
 }
 
+/// Runs the command; returns the exit code.
+int run_and_report(int argc, char** argv) {
+  try {
+    const int code = run(argc, argv);
+    const bool is_told = std::fflush(stdout) == 0 || errno == EPIPE;
+    return is_told ? code : say("cannot write to the standard output", errno);
+  } catch (const dapple::Error& error) {
+    say(error.what());
+    return static_cast<int>(error.kind());
+  } catch (const std::bad_alloc&) {
+    return say("out of memory; try a smaller image, fewer rays or a smaller scene");
+  } catch (const std::system_error& error) {
+    return report(error);
+  } catch (const std::exception& error) {
+    return say(error.what());
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -133,17 +177,11 @@ int main(int argc, char** argv) {
   occupy_closed_descriptors();
   std::signal(SIGCHLD, SIG_DFL);  // whatever we were started with: we wait for processes of ours
   std::signal(SIGXFSZ, SIG_IGN);  // a write past ulimit -f fails, and says why
+  std::signal(SIGPIPE, print_nowhere);
+  dapple::keep_signal_handler(SIGPIPE);
   dapple::report_driver_crashes();
   dapple::CompilerProcesses::use("/proc/self/exe");
-  try {
-    const int code = run(argc, argv);
-    return std::fflush(stdout) == 0 ? code : say("cannot write to the standard output", errno);
-  } catch (const dapple::Error& error) {
-    say(error.what());
-    return static_cast<int>(error.kind());
-  } catch (const std::bad_alloc&) {
-    return say("out of memory; try a smaller image, fewer rays or a smaller scene");
-  } catch (const std::exception& error) {
-    return say(error.what());
-  }
+  const int code = run_and_report(argc, argv);
+  dapple::expect_exit();
+  return code;
 }

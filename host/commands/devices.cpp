@@ -33,7 +33,7 @@ void print_device(const DeviceInfo& info) {
   fmt::print("{}\n  {} ({}), driver {}, {} compute units, {}\n", info.name, info.kind,
              info.platform, info.driver, info.compute_units,
              bytes_text(static_cast<double>(info.memory_bytes)));
-  if (std::fflush(stdout) != 0)
+  if (std::fflush(stdout) != 0 && errno != EPIPE)
     throw Error(ErrorKind::failed,
                 std::string("cannot write to the standard output: ") + std::strerror(errno));
 }

@@ -115,6 +115,9 @@ struct DeviceContext::State {
   /// The text that names a program of that source in KernelCache.
   [[nodiscard]] std::string known_by(const std::string& source, const Variant& variant) const;
   cl::Program& program(const std::string& file, const Variant& variant);
+  [[nodiscard]] bool has(const KernelName& name) const {
+    return kernels.contains({name.source_file(), name.name, name.variant});
+  }
   cl::Kernel& kernel(const KernelName& name);
   void collect_events();
 };
@@ -178,8 +181,8 @@ DeviceContext::DeviceContext(const std::string& name, std::string kernel_dir, Pa
   s.info = describe(s.device);
   in_opencl("opening " + s.info.name, [&] {
     // GPUs may have the host's memory, too, but their drivers may copy what the host allocated.
-    s.shares_memory = (s.device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_CPU) != 0 &&
-                      !has_own_memory(s.device);
+    s.shares_memory =
+        (s.device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_CPU) != 0 && !has_own_memory(s.device);
     s.context = make_context(s.device);
     s.queue = cl::CommandQueue(s.context, s.device, CL_QUEUE_PROFILING_ENABLE);
   });
@@ -305,9 +308,13 @@ void DeviceContext::read(const Buffer& buffer, void* data, std::size_t bytes, st
   });
 }
 
+void DeviceContext::require_linker_for(const KernelName& kernel) const {
+  if (state_->info.platform != kPoclPlatform || state_->has(kernel)) return;
+  if (!is_compiled(kernel, CompileTo::machine_code)) require_linker();
+}
+
 void DeviceContext::prepare(const KernelName& kernel) {
-  if (state_->info.platform == kPoclPlatform && !is_compiled(kernel, CompileTo::machine_code))
-    require_linker();
+  require_linker_for(kernel);
   in_opencl("compiling kernel " + kernel.name, [&] { state_->kernel(kernel); });
 }
 
@@ -326,6 +333,7 @@ bool DeviceContext::is_compiled(const KernelName& kernel, CompileTo to) const {
 void DeviceContext::warm_up() { state_->warming_up = true; }
 
 std::size_t DeviceContext::largest_group(const KernelName& kernel) {
+  require_linker_for(kernel);
   return in_opencl("compiling kernel " + kernel.name, [&]() -> std::size_t {
     cl::Kernel& compiled = state_->kernel(kernel);
     // Mesa says 32 of every kernel, and launches larger work-groups.
@@ -338,6 +346,7 @@ std::size_t DeviceContext::largest_group(const KernelName& kernel) {
 void DeviceContext::launch(const KernelName& name, const std::string& label, std::size_t items,
                            const std::vector<KernelArgument>& arguments, std::size_t group) {
   if (items == 0 && !state_->warming_up) return;
+  require_linker_for(name);
   in_opencl("running pass " + label, [&] {
     cl::Kernel& kernel = state_->kernel(name);
     cl_uint index = 0;

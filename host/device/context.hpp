@@ -159,6 +159,8 @@ class DeviceContext {
   [[nodiscard]] const std::map<std::string, double>& pass_seconds() const;
 
  private:
+  /// Throws Error device where PoCL would have to link the kernel and cannot.
+  void require_linker_for(const KernelName& kernel) const;
   struct State;
   /// A buffer of `bytes` that uses `pages`, which hold at least as many.
   Buffer on_pages(std::unique_ptr<Pages> pages, std::size_t bytes);

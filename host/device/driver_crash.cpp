@@ -8,6 +8,7 @@
 #include <array>
 #include <atomic>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 
 #include "dapple/error.hpp"
@@ -24,6 +25,12 @@ std::atomic<int> devices_open{0};
 std::array<std::atomic<char>, 160> doing{};
 
 void say(const char* text) { (void)!write(STDERR_FILENO, text, std::strlen(text)); }
+
+void say_task() {
+  std::array<char, doing.size()> task;
+  std::copy(doing.begin(), doing.end(), task.begin());
+  say(task.data());
+}
 
 const char* name_of(int signal) {
   switch (signal) {
@@ -46,14 +53,22 @@ void on_crash(int signal) {
     return;
   }
   say("dapple: the OpenCL driver crashed while ");
-  std::array<char, doing.size()> task;
-  std::copy(doing.begin(), doing.end(), task.begin());
-  say(task.data());
+  say_task();
   say(": ");
   say(name_of(signal));
   say(". What it said itself is above; often memory (ulimit -v) or disk space has run out, "
       "or a variable of the driver's is wrong (POCL_MAX_PTHREAD_COUNT, POCL_DEVICES). --device "
       "chooses another device\n");
+  _exit(static_cast<int>(ErrorKind::device));
+}
+
+/// LLVM ends the process itself where it cannot write a file.
+void on_exit_of_driver() {
+  if (!reporting || (calls_under_way == 0 && devices_open == 0)) return;
+  say("dapple: the OpenCL driver ended the process while ");
+  say_task();
+  say(". What it said itself is above; often disk space has run out, of its cache "
+      "(XDG_CACHE_HOME, or ~/.cache) or of TMPDIR\n");
   _exit(static_cast<int>(ErrorKind::device));
 }
 
@@ -87,9 +102,11 @@ void keep_signal_handler(int signal) {
 }
 
 void report_driver_crashes() {
-  reporting = true;
+  if (!reporting.exchange(true)) std::atexit(on_exit_of_driver);
   renew_crash_reports();
 }
+
+void expect_exit() { reporting = false; }
 
 void renew_crash_reports() {
   if (!reporting) return;

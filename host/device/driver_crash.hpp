@@ -8,16 +8,19 @@
 namespace dapple {
 
 /// From now on a crash of the driver prints one line, "dapple: the OpenCL driver crashed while
-/// compiling kernel packet ...", and ends the process with exit code 4 instead of a signal. For
-/// programs: the library never calls it.
+/// compiling kernel packet ...", and ends the process with exit code 4 instead of a signal. So it
+/// does when the driver calls exit(). For programs: the library never calls it.
 void report_driver_crashes();
+
+/// From now on the process exits by itself, and nothing is reported.
+void expect_exit();
 
 /// Sets the signal handlers again after a driver was loaded, which may have replaced them, as the
 /// LLVM in PoCL does. Does nothing if report_driver_crashes() was never called.
 void renew_crash_reports();
 
-/// The present handler of `signal` is set again, too, whenever a driver replaced it: the LLVM in PoCL
-/// takes SIGXCPU, and ignores the first.
+/// The present handler of `signal` is set again, too, whenever a driver replaced it: the LLVM in
+/// PoCL takes SIGXCPU, and ignores the first.
 void keep_signal_handler(int signal);
 
 /// While an object lives, a crash in any thread counts as the driver's, and the report names the

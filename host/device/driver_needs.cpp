@@ -24,6 +24,10 @@ constexpr rlim_t kStackBytes = rlim_t{1} << 20;
 /// no driver.
 constexpr rlim_t kAddressBytes = rlim_t{1} << 29;
 
+/// PoCL's threads, the compilers' processes, and the program. The limit counts all that a user
+/// runs.
+constexpr rlim_t kProcesses = 8;
+
 rlim_t limit_of(int resource) {
   rlimit limit{};
   return getrlimit(static_cast<__rlimit_resource>(resource), &limit) == 0 ? limit.rlim_cur
@@ -57,6 +61,12 @@ void check_process_limits() {
         fmt::format("stacks may only have {} kB here (ulimit -s), and OpenCL drivers need {} "
                     "kB to compile kernels",
                     stack / 1024, kStackBytes / 1024));
+  }
+  if (const rlim_t processes = limit_of(RLIMIT_NPROC); processes < kProcesses && geteuid() != 0) {
+    throw Error(ErrorKind::failed,
+                fmt::format("only {} processes and threads may run here (ulimit -u), and OpenCL "
+                            "drivers need {} and more",
+                            processes, kProcesses));
   }
   for (const auto& [resource, option] : {std::pair{RLIMIT_AS, "-v"}, {RLIMIT_DATA, "-d"}}) {
     const rlim_t bytes = limit_of(resource);

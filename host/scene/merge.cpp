@@ -133,8 +133,16 @@ void transform_vertices(Mesh& mesh, std::size_t first, const M44f& to_world) {
   });
 }
 
-// A mirroring matrix reverses the winding of triangles. That is left as it is: every surface
-// occludes from both sides, and normals are flipped towards the viewer.
+// Appends the indices. A mirroring matrix reverses the winding of triangles: two corners of each
+// change places, so that the front stays the front.
+void append_indices(Mesh& merged, const Mesh& mesh, std::uint32_t offset, bool mirrored) {
+  const std::size_t first = merged.indices.size();
+  for (const std::uint32_t index : mesh.indices) merged.indices.push_back(index + offset);
+  if (!mirrored || mesh.has_strands()) return;
+  for (std::size_t i = first; i < merged.indices.size(); i += 3)
+    std::swap(merged.indices[i + 1], merged.indices[i + 2]);
+}
+
 void append_placed(Mesh& merged, const Mesh& mesh, const M44f& to_world, const Totals& totals) {
   const std::size_t first = merged.positions.size();
   merged.positions.insert(merged.positions.end(), mesh.positions.begin(), mesh.positions.end());
@@ -146,8 +154,8 @@ void append_placed(Mesh& merged, const Mesh& mesh, const M44f& to_world, const T
     merged.normals.resize(merged.positions.size(), V3f(0, 0, 0));
   }
   transform_vertices(merged, first, to_world);
-  const auto offset = static_cast<std::uint32_t>(first);
-  for (const std::uint32_t index : mesh.indices) merged.indices.push_back(index + offset);
+  append_indices(merged, mesh, static_cast<std::uint32_t>(first),
+                 Imath::M44d(to_world).determinant() < 0);
   merged.materials.insert(merged.materials.end(), mesh.materials.begin(), mesh.materials.end());
   if (totals.uvs) {
     merged.uvs.insert(merged.uvs.end(), mesh.uvs.begin(), mesh.uvs.end());

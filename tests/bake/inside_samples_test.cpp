@@ -186,6 +186,15 @@ TEST(InsideSamples, AFloorIsNotDarkerAtItsVerticesBelowABox) {
   }
 }
 
+// A box that is placed once is merged with the floor.
+TEST(InsideSamples, AMirroredBoxHidesAsABoxDoes) {
+  Scene box = flat_box(-1);
+  box.instances.at(0).to_world.setScale(V3f(-1, 1, 1));
+  const BakeResult result = bake(floor_scene(), few_rays(), {}, {box});
+  for (const float ao : result.meshes.at(0).ao) EXPECT_GT(ao, 0.96f);
+  EXPECT_NEAR(static_cast<double>(result.statistics.inside_samples), 72, 8);
+}
+
 TEST(InsideSamples, WithATargetTooAndOnBothSides) {
   Scene floor = floor_scene();
   floor.materials[0].double_sided = true;

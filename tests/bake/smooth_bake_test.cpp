@@ -112,6 +112,29 @@ TEST(SmoothBake, VerticesOfASphereOf504TrianglesAreUnoccludedAndAsBrightAsTheirC
   }
 }
 
+// Rays start on the smooth sphere, 3 mm above its facets: not where a sheet lies between.
+TEST(SmoothBake, ASphereThatTouchesASheetIsDarkWhereItDoes) {
+  Scene scene = scene_of(test::smooth_sphere());
+  Mesh sheet;
+  append_grid(sheet, {-20, -1, -20}, {0, 0, 40}, {40, 0, 0}, 1, 0);
+  scene.meshes.push_back(sheet);
+  scene.instances.resize(2);
+  scene.instances[1].mesh = 1;
+  BakeOptions options = exactly(512);
+  options.light = true;
+  options.lights = {small_sun({0, -1, 0})};  // from below the sheet
+  const BakedMesh baked = bake(scene, options).meshes.at(0);
+  const std::vector<V3f>& positions = scene.meshes[0].positions;
+  int below = 0;
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    if (positions[v].y > -0.95f) continue;
+    ++below;
+    EXPECT_LE(baked.ao[v], 0.06f) << positions[v];
+    EXPECT_LE(baked.light.at(0)[v].x, 0.01f) << positions[v];
+  }
+  EXPECT_GE(below, 20);
+}
+
 // The sides of a steep pyramid face away from each other: their normals at the apex are up.
 TEST(SmoothBake, TheApexOfASteepPyramidSeesAllAboveIt) {
   Mesh mesh;

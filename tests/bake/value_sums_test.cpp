@@ -56,6 +56,24 @@ TEST(ValueSums, APlaceWithoutSamplesIsUnoccluded) {
   EXPECT_EQ(sums.values()[0].ao, 1);
 }
 
+TEST(ValueSums, BentNormalsOfBothSidesAreTheFrontsWhereTheyCancel) {
+  for (const float back : {1.0f, 0.3f}) {
+    std::vector<SurfaceSample> samples(1);
+    samples[0].back = true;
+    samples[0].weight = {1, 0, 0};
+    TracedSamples found;
+    found.front = {{1, V3f(0, 0.9f, 0.02f)}};
+    found.back = {{back, V3f(0.9f * back, -0.9f * back, 0)}};
+    if (back == 1) found.back[0].bent.x = 0.02f;  // noise
+    ValueSums sums(one_part(1), BakeSides::mean);
+    sums.add(samples, found);
+    sums.choose_sides();
+    const V3f bent = sums.values()[0].bent;
+    const V3f expected = back == 1 ? found.front[0].bent : found.front[0].bent + found.back[0].bent;
+    EXPECT_TRUE(bent.equalWithAbsError(expected.normalized(), 1e-5f)) << bent;
+  }
+}
+
 // Samples are added where values are uncertain, which must not decide for the whole leaf.
 TEST(ValueSums, PlacesOfAPartCountTheSameHoweverManySamplesTheyHave) {
   Samples samples;

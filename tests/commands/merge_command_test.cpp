@@ -36,6 +36,9 @@ TEST_F(MergeCommand, ShardsOfOtherProcessesAreTheFileOfOneRender) {
   const Outcome two = dapple("merge c.dapple a.dapple -o two.exr");
   EXPECT_EQ(two.code, 0);
   EXPECT_TRUE(contains(two.err, "note: parts are missing: samples 3 to 4 of 7")) << two.err;
+  const Outcome quiet = dapple("merge c.dapple a.dapple -o two.exr -q");
+  EXPECT_EQ(quiet.out, "");
+  EXPECT_EQ(quiet.err, "note: parts are missing: samples 3 to 4 of 7\n");
   expect_failure(dapple("merge a.dapple b.dapple a.dapple -o no.exr"), 2,
                  "a.dapple is named twice: its samples 1 to 2");
   expect_failure(dapple("merge a.dapple -o a.dapple"), 2,

@@ -49,6 +49,16 @@ TEST_F(ProcessLimits, AClosedStandardErrorDoesNotSpoilThePicture) {
   EXPECT_EQ(files_in_folder(), 1u);
 }
 
+TEST_F(ProcessLimits, ALostReaderDoesNotStopTheWork) {
+  for (const char* lost : {"2>&1", "2>/dev/null"}) {
+    const Outcome run = render(
+        "", std::string("bash -c '\"$0\" \"$@\" ") + lost + " | true; exit ${PIPESTATUS[0]}'");
+    EXPECT_EQ(run.code, 0) << lost << run.err;
+    EXPECT_EQ(read_exr(path("out.exr")).width, 8) << lost;
+    EXPECT_EQ(files_in_folder(), 1u);
+  }
+}
+
 TEST_F(ProcessLimits, AMissingTemporaryFolderIsNamedAndRendersDoNotNeedIt) {
   const std::string missing = "TMPDIR=" + path("missing");
   EXPECT_EQ(render("", missing).code, 0);
@@ -85,6 +95,9 @@ TEST_F(ProcessLimits, WithAnEmptyEnvironmentItSaysWhatIsMissing) {
                  "PoCL links kernels with the program ld, which is not in PATH (not set); add its "
                  "folder, for example /usr/bin");
   EXPECT_FALSE(std::filesystem::exists(path("out.exr")));
+  for (const char* command : {"points 'scene:tree?leaves=200' --grid=0,0,1,1,1 -o out.csv",
+                              "bake 'scene:tree?leaves=200' -o out.glb"})
+    expect_failure(dapple(command, "env -i"), 4, "PoCL links kernels with the program ld");
   const Outcome devices = dapple("devices", "env -i");
   EXPECT_EQ(devices.code, 0) << devices.err;
   expect_failure(dapple("render", "env -i"), 2, "SCENE is missing");

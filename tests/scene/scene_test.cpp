@@ -79,10 +79,13 @@ std::vector<WorldTriangle> world_triangles(const Scene& scene) {
   std::vector<WorldTriangle> triangles;
   for (const Instance& instance : scene.instances) {
     const Mesh& mesh = scene.meshes[instance.mesh];
+    // Where the matrix mirrors, corners change places: the front stays the front.
+    const bool mirrored = Imath::M44d(instance.to_world).determinant() < 0;
     for (std::size_t t = 0; t < mesh.primitive_count(); ++t) {
       WorldTriangle triangle{};
       for (std::size_t k = 0; k < 3; ++k) {
-        const V3f p = mesh.positions[mesh.indices[3 * t + k]] * instance.to_world;
+        const std::size_t corner = mirrored && k > 0 ? 3 - k : k;
+        const V3f p = mesh.positions[mesh.indices[3 * t + corner]] * instance.to_world;
         for (int axis = 0; axis < 3; ++axis)
           triangle[3 * k + static_cast<std::size_t>(axis)] = p[axis];
       }
@@ -168,7 +171,7 @@ TEST(AddGround, IsOpaqueTwoHundredTimesAsWideAndJustBelowTheLowestPoint) {
   EXPECT_EQ(scene.materials.back().alpha_mode, AlphaMode::opaque);
 }
 
-TEST(Merge, KeepsEveryWorldSpaceTriangleAndMakesOneMesh) {
+TEST(Merge, KeepsEveryWorldSpaceTriangleWithItsFrontAndMakesOneMesh) {
   Scene scene = scene_of(
       {unit_triangle("a"), triangle_mesh("b", {1, 1, 1}, {2, 3, 4}, {0, 5, 1}), unit_triangle("c")},
       {placed(0, translation({3, 0, 0})), placed(1, scaling({-1, 1, 2})),

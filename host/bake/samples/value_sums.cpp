@@ -39,6 +39,14 @@ constexpr float kPooledFreedom = 4;
 /// Degrees of freedom that the variance of single rays counts beside those of all samples.
 constexpr float kRayFreedom = 8;
 
+/// The sum of the sides' directions; the front's where the sides see alike, so that they cancel but
+/// for their noise.
+V3f bent_of_both(const V3f& front, const V3f& back) {
+  constexpr float kLeast = 0.2f;  // of the lengths
+  const V3f sum = front + back;
+  return sum.length() > kLeast * (front.length() + back.length()) ? sum : front;
+}
+
 }  // namespace
 
 PlacesOfParts::PlacesOfParts(const SmallParts& parts) : begin_(parts.count + 1) {
@@ -321,9 +329,8 @@ std::vector<PlaceValue> ValueSums::values() const {
     const float share = sampled_share_of_back(i);
     const float ao = place.front.mean() + share * (place.back.mean() - place.front.mean());
     // Bent normals of two sides cancel each other: that of the more likely side counts.
-    const V3f bent = sides_ == BakeSides::mean ? place.front.bent + place.back.bent
-                     : share > 0.5f            ? place.back.bent
-                                               : place.front.bent;
+    V3f bent = share > 0.5f ? place.back.bent : place.front.bent;
+    if (sides_ == BakeSides::mean) bent = bent_of_both(place.front.bent, place.back.bent);
     values[i] = {std::clamp(ao, 0.0f, 1.0f), bent.normalized(), true, is_dark(i)};
   }
   return values;

@@ -167,9 +167,9 @@ NewAttribute color_attribute(gltf::PrimitiveColors colors, const VertexSums& sum
     for (std::size_t c = 0; c < attribute.components; ++c)
       attribute.values.push_back(colors.values[4 * v + c]);
   }
-  // The file's colours may be floats of any value.
-  if (std::all_of(attribute.values.begin(), attribute.values.end(),
-                  [](float value) { return value >= 0 && value <= 1; }))
+  // The file's floats may be of any value, and too small for 16 bits.
+  if (!colors.are_floats && std::all_of(attribute.values.begin(), attribute.values.end(),
+                                        [](float value) { return value >= 0 && value <= 1; }))
     attribute.storage = gltf::Storage::normalized16;
   return attribute;
 }

@@ -93,7 +93,10 @@ void run_merge(const MergeArguments& a) {
     write_heat_map(result.film, visits_path(files.png), "visits.nodes");
   if (!files.stats_json.empty())
     write_whole_file(files.stats_json, json_text(merge_json(merge, a.parts.size())));
-  if (!files.quiet) print(merge, a);
+  if (!files.quiet)
+    print(merge, a);
+  else if (!merge.missing.empty())
+    tell("note: parts are missing: {}\n", merge.missing);
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "passes/occlusion_pass.hpp"
 #include "passes/point_order.hpp"
 #include "render/option_check.hpp"
+#include "render/queries/free_shifts.hpp"
 #include "render/queries/point_checks.hpp"
 #include "scene/images/color.hpp"
 
@@ -153,16 +154,19 @@ void check(std::size_t points, std::size_t normals, std::size_t lights, std::siz
 
 std::vector<PointIrradiance> point_irradiance(const Device& device, const DeviceScene& scene,
                                               std::span<const Light> lights,
-                                              const QueryPoints& points,
+                                              const QueryPoints& given,
                                               const IrradianceOptions& options,
                                               const RenderControl& control) {
   check_uploaded(scene);
-  const std::size_t count = points.positions.size();
-  check(count, points.normals.size(), lights.size(), scene.buffers->light_records.size(),
+  const std::size_t count = given.positions.size();
+  check(count, given.normals.size(), lights.size(), scene.buffers->light_records.size(),
         options.rays);
   const std::vector<V3f> zeros(count, V3f(0, 0, 0));
   std::vector<PointIrradiance> result(lights.size(), PointIrradiance{zeros, zeros});
   if (count == 0 || lights.empty()) return result;
+  QueryPoints points = given;
+  const std::vector<V3f> shifts = free_shifts(device, scene, given);
+  points.shifts = shifts;
   DeviceContext& context = device.context();
   const auto rays = static_cast<std::size_t>(options.rays);
   const std::size_t slice = query_points(context, rays, count);

@@ -16,6 +16,7 @@
 #include "passes/point_order.hpp"
 #include "passes/queues.hpp"
 #include "render/option_check.hpp"
+#include "render/queries/free_shifts.hpp"
 #include "render/queries/point_checks.hpp"
 #include "render/queries/shared_points.hpp"
 
@@ -102,14 +103,17 @@ void check(const OcclusionOptions& options) {
 }  // namespace
 
 PointOcclusion point_occlusion(const Device& device, const DeviceScene& scene,
-                               const QueryPoints& points, const OcclusionOptions& options,
-                               bool bent, const RenderControl& control) {
+                               const QueryPoints& given, const OcclusionOptions& options, bool bent,
+                               const RenderControl& control) {
   check_uploaded(scene);
-  const std::size_t count = points.positions.size();
-  if (count != points.normals.size()) {
+  const std::size_t count = given.positions.size();
+  if (count != given.normals.size()) {
     throw Error(ErrorKind::usage,
-                fmt::format("occlusion: {} points but {} normals", count, points.normals.size()));
+                fmt::format("occlusion: {} points but {} normals", count, given.normals.size()));
   }
+  QueryPoints points = given;
+  const std::vector<V3f> shifts = free_shifts(device, scene, given);
+  points.shifts = shifts;
   DeviceContext& context = device.context();
   const auto rays = static_cast<std::size_t>(options.rays);
   const std::size_t slice = query_points(context, rays, count);

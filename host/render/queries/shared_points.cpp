@@ -38,7 +38,7 @@ SurfacePoint surface_point(const V3f& position, const V3f& normal, const V3f& pl
 /// Moves the point of a smooth surface to where its rays start: shade_point() of
 /// smooth_point.clh, but for normals that face away: points have no viewer.
 void smooth(const V3f& geometric, const V3f& shift, SurfacePoint& point) {
-  const bool outward = geometric.dot(shift) > point.offset;  // by more than rounding errors
+  const bool outward = moves_outward(geometric, shift, point);
   for (int axis = 0; axis < 3; ++axis)
     point.position[axis] += point.offset * geometric[axis] + (outward ? shift[axis] : 0.0f);
   point.offset = 0;
@@ -62,18 +62,27 @@ float offset_above_plane(const V3f& reach, const V3f& normal) {
   return along * kTermsOfReach * kOriginOffset;
 }
 
+SurfacePoint query_point(const QueryPoints& points, std::uint32_t i, const SceneParams& scene) {
+  const bool is_smooth = !points.geometric.empty() && points.geometric[i].length2() > 0;
+  return surface_point(points.positions[i], points.normals[i],
+                       is_smooth ? points.geometric[i] : points.normals[i],
+                       points.reaches.empty() ? V3f(0, 0, 0) : points.reaches[i], i,
+                       points.has_planes && scene.has_top == 0);
+}
+
+bool moves_outward(const V3f& geometric, const V3f& shift, const SurfacePoint& point) {
+  return geometric.dot(shift) > point.offset;
+}
+
 SharedPoints::SharedPoints(DeviceContext& context, const QueryPoints& points,
                            std::span<const std::uint32_t> chosen, const SceneParams& scene)
     : context_(context) {
   points_.resize(chosen.size());
   tbb::parallel_for(std::size_t{0}, chosen.size(), [&](std::size_t k) {
     const std::uint32_t i = chosen[k];
-    const bool is_smooth = !points.geometric.empty() && points.geometric[i].length2() > 0;
-    points_[k] = surface_point(points.positions[i], points.normals[i],
-                               is_smooth ? points.geometric[i] : points.normals[i],
-                               points.reaches.empty() ? V3f(0, 0, 0) : points.reaches[i], i,
-                               points.has_planes && scene.has_top == 0);
-    if (is_smooth) smooth(points.geometric[i], points.shifts[i], points_[k]);
+    points_[k] = query_point(points, i, scene);
+    if (!points.geometric.empty() && points.geometric[i].length2() > 0)
+      smooth(points.geometric[i], points.shifts[i], points_[k]);
   });
 }
 

@@ -41,6 +41,13 @@ struct QueryPoints {
   std::span<const V3f> reaches = {};
 };
 
+/// Point `i`, not moved to its smooth surface; its rays start `offset` above it.
+SurfacePoint query_point(const QueryPoints& points, std::uint32_t i, const SceneParams& scene);
+
+/// Whether the point of a smooth surface moves to it: where that lies above its triangle by more
+/// than rounding errors.
+bool moves_outward(const V3f& geometric, const V3f& shift, const SurfacePoint& point);
+
 /// Points in host memory that the device reads in place. The destructor waits for the device.
 class SharedPoints {
  public:

@@ -141,8 +141,10 @@ void warn(const std::string& file, const Found& found, const char* what, Scene& 
 
 void warn_of_totals(const std::string& file, const MeshTotals& totals, std::uint64_t unbound,
                     Scene& scene) {
-  warn(file, totals.thin_lines,
-       "line primitives are ignored: --line-radius R makes strands of them", scene);
+  warn(
+      file, totals.thin_lines,
+      "line primitives are ignored: --line-radius R makes strands of them (dapple render and info)",
+      scene);
   warn(file, totals.points, "point primitives are ignored", scene);
   warn(file, totals.textured_lines,
        "line primitives have a texture, which is ignored: their factor alone is their opacity",
@@ -227,7 +229,9 @@ void add_instances(const Document& document, const std::vector<PlacedNode>& plac
   warn_of_totals(document.file, totals, unbound, scene);
   if (!scene.instances.empty()) return;
   fail(document.file, "has no triangles{}",
-       totals.thin_lines > 0 ? "; --line-radius R makes strands of its lines" : "");
+       totals.thin_lines > 0
+           ? "; --line-radius R makes strands of its lines (dapple render and info)"
+           : "");
 }
 
 }  // namespace dapple::gltf

@@ -127,6 +127,16 @@ TEST_F(BakedChannel, ColoursAboveOneStayFloats) {
   for (std::size_t v = 0; v < 3; ++v) EXPECT_FLOAT_EQ(rgba[4 * v], 4 * ao_[v]);
 }
 
+TEST_F(BakedChannel, FloatsKeepTheChannelsThatAreNotNamed) {
+  write("in.glb", shaded_triangle({1e-6f, 1e-5f, 0.3f, 1}).glb());
+  const std::vector<float> rgba = baked("--channel COLOR_0.b", "COLOR_0", 4);
+  for (std::size_t v = 0; v < 3; ++v) {
+    EXPECT_EQ(rgba[4 * v], 1e-6f);
+    EXPECT_EQ(rgba[4 * v + 1], 1e-5f);
+    EXPECT_FLOAT_EQ(rgba[4 * v + 2], 0.3f * ao_[v]);
+  }
+}
+
 TEST_F(BakedChannel, AoIsMultipliedWithTheColoursThatAreNamedOrReplacesThem) {
   struct Case {
     const char* options;

@@ -119,7 +119,8 @@ PrimitiveColors SourceFile::colors(std::uint32_t mesh, std::uint32_t primitive) 
   const int accessor = attribute(content->primitive(mesh, primitive), "COLOR_0");
   if (accessor < 0) return {};
   const AccessorReader reader(content->document, accessor);
-  PrimitiveColors colors{static_cast<std::uint32_t>(reader.components()), {}};
+  PrimitiveColors colors{static_cast<std::uint32_t>(reader.components()), {}, false};
+  colors.are_floats = reader.element_bytes() == sizeof(float) * reader.components();
   colors.values.resize(4 * reader.count(), 1.0f);
   for (std::size_t i = 0; i < reader.count(); ++i)
     for (std::uint32_t c = 0; c < colors.components; ++c)

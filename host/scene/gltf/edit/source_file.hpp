@@ -17,6 +17,7 @@ namespace dapple::gltf {
 struct PrimitiveColors {
   std::uint32_t components = 0;  ///< 3 or 4; 0: none
   std::vector<float> values;     ///< RGBA
+  bool are_floats = false;       ///< in the file
 };
 
 /// What identifies the vertices of a primitive: a copy of a mesh, POSITION and another attribute.
