@@ -342,4 +342,19 @@ MUTATIONS = [
         "const double off = (static_cast<double>(i) + 0.5) / std::max(size, 1) - 0.5;",
         "const double off = 0.0 * static_cast<double>(i);",
         r"^Png\."),
+    Mutation(
+        "mirrored-meshes-are-inside-out", "host/scene/merge.cpp",
+        "if (!mirrored || mesh.has_strands()) return;",
+        "return;",
+        r"^(Merge|InsideSamples)\."),
+    Mutation(
+        "smooth-points-move-through-surfaces", "host/render/queries/free_shifts.cpp",
+        "if (found[k].transmittance < kFree)",
+        "if (found[k].transmittance < 0)",
+        r"^SmoothBake\."),
+    Mutation(
+        "bent-normals-of-both-sides-cancel", "host/bake/samples/value_sums.cpp",
+        "constexpr float kLeast = 0.2f;",
+        "constexpr float kLeast = 0.0f;",
+        r"^ValueSums\."),
 ]
