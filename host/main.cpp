@@ -49,10 +49,13 @@ bool is_stack_too_small() {
 
 /// Files that are opened later must not become the standard input, output or error.
 void occupy_closed_descriptors() {
-  for (const int descriptor : {0, 1, 2}) {
-    if (fcntl(descriptor, F_GETFD) >= 0) continue;
-    // Writing to the standard output must fail, to the standard error it need not.
-    (void)!open("/dev/null", descriptor == 2 ? O_WRONLY : O_RDONLY);
+  const auto is_closed = [](int descriptor) { return fcntl(descriptor, F_GETFD) < 0; };
+  // Writing to the standard output must fail, unless nobody would be told, as of daemons.
+  const bool output_fails = !is_closed(STDERR_FILENO);
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (!is_closed(descriptor)) continue;
+    const bool fails = descriptor == STDIN_FILENO || (descriptor == STDOUT_FILENO && output_fails);
+    (void)!open("/dev/null", fails ? O_RDONLY : O_WRONLY);
   }
 }
 

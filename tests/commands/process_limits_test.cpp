@@ -49,6 +49,14 @@ TEST_F(ProcessLimits, AClosedStandardErrorDoesNotSpoilThePicture) {
   EXPECT_EQ(files_in_folder(), 1u);
 }
 
+TEST_F(ProcessLimits, ADaemonWithNothingOpenIsDoneWhenItsPictureIs) {
+  EXPECT_EQ(render("", "sh -c 'exec \"$0\" \"$@\" <&- >&- 2>&-'").code, 0);
+  EXPECT_EQ(read_exr(path("out.exr")).width, 8);
+  const Outcome run = render("", "sh -c 'exec \"$0\" \"$@\" >&-'");
+  EXPECT_EQ(run.code, 1);
+  EXPECT_TRUE(contains(run.err, "cannot write to the standard output")) << run.err;
+}
+
 TEST_F(ProcessLimits, ALostReaderDoesNotStopTheWork) {
   for (const char* lost : {"2>&1", "2>/dev/null"}) {
     const Outcome run = render(

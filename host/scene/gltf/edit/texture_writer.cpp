@@ -22,7 +22,7 @@ std::string bytes_of(const std::vector<T>& values) {
   return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
 }
 
-/// Copies of the elements `source` of an accessor, stored as there.
+/// Copies of the elements `source` of an accessor, stored as there, with bounds if it has some.
 std::size_t copy_elements(Editor& editor, std::size_t accessor,
                           const std::vector<std::uint32_t>& source, bool with_bounds) {
   const AccessorReader reader(editor.content().document, static_cast<int>(accessor));
@@ -39,6 +39,7 @@ std::size_t copy_elements(Editor& editor, std::size_t accessor,
     }
   }
   Json json = editor.json()["accessors"][accessor];
+  with_bounds = with_bounds || json.contains("min");
   for (const char* key : {"byteOffset", "sparse", "min", "max"}) json.erase(key);
   json["bufferView"] = editor.add_view(bytes, stride, kArrayBuffer);
   json["count"] = source.size();
