@@ -11,6 +11,7 @@
 #include "camera/camera_splitting.hpp"
 #include "dapple/error.hpp"
 #include "scene/check/finite.hpp"
+#include "scene/check/scene_check.hpp"
 
 namespace dapple {
 namespace {
@@ -166,15 +167,15 @@ float view_depth(const Camera& camera, const V3f& at) {
 }
 
 /// Refuses numbers that no camera has. Files have none of these.
-void check_camera(const Camera& camera) {
-  const auto that = [&](bool holds, const char* what, float value, const char* range) {
-    if (!holds)
-      throw Error(ErrorKind::input, fmt::format("camera \"{:.100}\" has the {} {}; it must be {}",
-                                                camera.name, what, value, range));
-  };
-  if (!is_finite(camera.to_world))
+void check_camera(const Scene& scene, const Camera& camera) {
+  const auto refuse = [&](const std::string& why) {
     throw Error(ErrorKind::input,
-                fmt::format("camera \"{:.100}\" has a place that is not finite", camera.name));
+                fmt::format("{}: camera \"{:.100}\" has {}", source_name(scene), camera.name, why));
+  };
+  const auto that = [&](bool holds, const char* what, float value, const char* range) {
+    if (!holds) refuse(fmt::format("the {} {}; it must be {}", what, value, range));
+  };
+  if (!is_finite(camera.to_world)) refuse("a place that is not finite");
   // In doubles: products of three small scales vanish in floats.
   const double volume = Imath::M44d(camera.to_world).determinant();
   that(volume != 0, "determinant", static_cast<float>(volume), "other than 0");
@@ -217,7 +218,7 @@ View choose_view(const Scene& scene, const RenderOptions& options,
   if (options.fov_degrees > 0 && view.camera.kind == Camera::Kind::perspective) {
     view.camera.fov_y = radians(options.fov_degrees);
   }
-  check_camera(view.camera);
+  check_camera(scene, view.camera);
   set_lens(scene, options, view.camera);
   return view;
 }

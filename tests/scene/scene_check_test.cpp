@@ -178,7 +178,7 @@ TEST(SceneCheck, CamerasThatSeeNothingAreRefused) {
     Scene scene = lit_square();
     scene.cameras.resize(1);
     change(scene.cameras[0]);
-    EXPECT_EQ(message_of([&] { (void)render(scene, {}); }), expected);
+    EXPECT_EQ(message_of([&] { (void)render(scene, {}); }), "the scene: " + expected);
   }
 }
 
