@@ -19,6 +19,7 @@
 #include "commands/arguments/argument_errors.hpp"
 #include "commands/command.hpp"
 #include "commands/interruption.hpp"
+#include "commands/tell.hpp"
 #include "dapple/error.hpp"
 #include "device/driver_crash.hpp"
 #include "device/programs/compiler_processes.hpp"
@@ -76,7 +77,6 @@ void print_nowhere(int) {
 
 /// What a standard library's failure means here.
 int report(const std::system_error& error) {
-  if (error.code() == std::errc::broken_pipe) return 0;  // print_nowhere()
   if (error.code() != std::errc::resource_unavailable_try_again) return say(error.what());
   return say(
       "cannot start a thread: too many processes and threads run (ulimit -u, or the limit of a "
@@ -159,8 +159,11 @@ int run(int argc, char** argv) {
 int run_and_report(int argc, char** argv) {
   try {
     const int code = run(argc, argv);
-    const bool is_told = std::fflush(stdout) == 0 || errno == EPIPE;
-    return is_told ? code : say("cannot write to the standard output", errno);
+    dapple::put_now();
+    const int failure = dapple::output_failure();
+    // EPIPE: print_nowhere().
+    return failure == 0 || failure == EPIPE ? code
+                                            : say("cannot write to the standard output", failure);
   } catch (const dapple::Error& error) {
     say(error.what());
     return static_cast<int>(error.kind());

@@ -47,6 +47,13 @@ std::vector<KernelName> kernels_of(const DeviceContext& context, const BakeOptio
   if (options.target_error <= 0)
     query.rays = sample_counts(options.rays, 1, options.at_vertices).rays;
   std::vector<KernelName> kernels = point_kernels(context, query);
+  if (options.normals == Normals::shading) {  // free_shifts()
+    PointQuery shifts;
+    shifts.estimator = Estimator::exact;
+    shifts.given_rays = true;
+    shifts.rays = 1;
+    for (KernelName& kernel : point_kernels(context, shifts)) kernels.push_back(std::move(kernel));
+  }
   if (options.light) {
     query.ao = query.bent = false;
     query.light = true;

@@ -8,6 +8,7 @@
 #include "commands/arguments/output_name.hpp"
 #include "commands/arguments/output_paths.hpp"
 #include "commands/command.hpp"
+#include "commands/tell.hpp"
 #include "compare/difference.hpp"
 #include "compare/figures_text.hpp"
 #include "compare/heat_map.hpp"
@@ -68,8 +69,8 @@ void write_heat_map(const LayerPair& layer, const Film& b, const CompareArgument
 void print_figures(const Comparison& comparison, const std::string& reason, bool json) {
   using Json = nlohmann::ordered_json;
   constexpr auto kRepair = Json::error_handler_t::replace;  // EXR's channel names are bytes
-  fmt::print("{}", json ? comparison_json(comparison, reason).dump(2, ' ', false, kRepair) + "\n"
-                        : comparison_text(comparison));
+  put("{}", json ? comparison_json(comparison, reason).dump(2, ' ', false, kRepair) + "\n"
+                 : comparison_text(comparison));
 }
 
 void run_compare(const CompareArguments& arguments) {

@@ -30,18 +30,15 @@ const char* describe(Packets packets) {
 }
 
 void print_device(const DeviceInfo& info) {
-  fmt::print("{}\n  {} ({}), driver {}, {} compute units, {}\n", info.name, info.kind,
-             info.platform, info.driver, info.compute_units,
-             bytes_text(static_cast<double>(info.memory_bytes)));
-  if (std::fflush(stdout) != 0 && errno != EPIPE)
-    throw Error(ErrorKind::failed,
-                std::string("cannot write to the standard output: ") + std::strerror(errno));
+  put("{}\n  {} ({}), driver {}, {} compute units, {}\n", info.name, info.kind, info.platform,
+      info.driver, info.compute_units, bytes_text(static_cast<double>(info.memory_bytes)));
+  put_now();
 }
 
 /// Whether the device can run every kernel.
 bool print_check(const DeviceCheck& check) {
-  for (const std::string& refusal : check.refusals) fmt::print("  cannot be used: {}\n", refusal);
-  if (check.refusals.empty()) fmt::print("  runs every kernel; {}\n", describe(check.packets));
+  for (const std::string& refusal : check.refusals) put("  cannot be used: {}\n", refusal);
+  if (check.refusals.empty()) put("  runs every kernel; {}\n", describe(check.packets));
   return check.refusals.empty();
 }
 
@@ -64,7 +61,7 @@ void run_devices(const DevicesArguments& a) {
     }
     one_will_do = print_check(check) || one_will_do;
   }
-  for (const std::string& refusal : refused_drivers()) fmt::print("{}\n", refusal);
+  for (const std::string& refusal : refused_drivers()) put("{}\n", refusal);
   if (!one_will_do)
     throw Error(ErrorKind::device, "no OpenCL device can run every kernel; the reasons are above");
 }

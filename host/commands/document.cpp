@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "commands/command.hpp"
+#include "commands/tell.hpp"
 #include "dapple/error.hpp"
 
 namespace dapple {
@@ -60,39 +61,37 @@ void print_option(const CLI::Option& option) {
   else if (takes_value(option))
     names += " \\fI" + troff(option.get_type_name()) + "\\fR";
   const std::string initial = option.get_default_str();
-  fmt::print(".TP\n{}\n{}{}\n", names, troff(option.get_description()),
-             initial.empty() ? "" : troff(" (default: " + initial + ")"));
+  put(".TP\n{}\n{}{}\n", names, troff(option.get_description()),
+      initial.empty() ? "" : troff(" (default: " + initial + ")"));
 }
 
 void print_footer(const CLI::App& app) {
-  if (!app.get_footer().empty()) fmt::print(".PP\n.nf\n{}\n.fi\n", troff(app.get_footer()));
+  if (!app.get_footer().empty()) put(".PP\n.nf\n{}\n.fi\n", troff(app.get_footer()));
 }
 
 void print_manual(const CLI::App& program) {
-  fmt::print(".TH DAPPLE 1 \"\" \"dapple {0}\" \"User Commands\"\n.SH NAME\ndapple \\- ",
-             DAPPLE_VERSION);
+  put(".TH DAPPLE 1 \"\" \"dapple {0}\" \"User Commands\"\n.SH NAME\ndapple \\- ", DAPPLE_VERSION);
   const std::string& about = program.get_description();
   const std::size_t line = about.find('\n');
-  fmt::print("{}\n.SH SYNOPSIS\n", troff(about.substr(0, std::min(line, about.size()) - 1)));
+  put("{}\n.SH SYNOPSIS\n", troff(about.substr(0, std::min(line, about.size()) - 1)));
   for (const CLI::App* command : shown_commands(program))
-    fmt::print(".B dapple {}\n[\\fIOPTION\\fR]...\n.br\n", command->get_name());
-  fmt::print(".SH DESCRIPTION\n.nf\n{}\n.fi\n", troff(about));
+    put(".B dapple {}\n[\\fIOPTION\\fR]...\n.br\n", command->get_name());
+  put(".SH DESCRIPTION\n.nf\n{}\n.fi\n", troff(about));
   print_footer(program);
-  fmt::print(".SH OPTIONS\n");
+  put(".SH OPTIONS\n");
   for (const CLI::Option* option : shown_options(program)) print_option(*option);
   for (const CLI::App* command : shown_commands(program)) {
     std::string heading = command->get_name();
     std::transform(heading.begin(), heading.end(), heading.begin(), ::toupper);
-    fmt::print(".SH {}\n{}.\n", heading, troff(command->get_description()));
+    put(".SH {}\n{}.\n", heading, troff(command->get_description()));
     for (const CLI::Option* option : shown_options(*command)) print_option(*option);
     print_footer(*command);
   }
-  fmt::print(".SH SEE ALSO\nThe guide, in /usr/share/doc/dapple or docs/ of the source.\n");
+  put(".SH SEE ALSO\nThe guide, in /usr/share/doc/dapple or docs/ of the source.\n");
 }
 
 void print_bash(const CLI::App& program) {
-  fmt::print(
-      "# bash completion of dapple, made by \"dapple document bash\".\n"
+  put("# bash completion of dapple, made by \"dapple document bash\".\n"
       "_dapple() {{\n"
       "  local word=${{COMP_WORDS[COMP_CWORD]}} options\n"
       "  case ${{COMP_WORDS[1]}} in\n");
@@ -101,12 +100,11 @@ void print_bash(const CLI::App& program) {
     std::string options;
     for (const CLI::Option* option : shown_options(*command))
       for (const std::string& flag : flags_of(*option)) options += " " + flag;
-    fmt::print("    {}) options=\"{}\" ;;\n", command->get_name(), options.substr(1));
+    put("    {}) options=\"{}\" ;;\n", command->get_name(), options.substr(1));
     names += " " + command->get_name();
   }
-  fmt::print("    *) options=\"--help --version\" ;;\n  esac\n");
-  fmt::print(
-      "  if [[ $COMP_CWORD -eq 1 && $word != -* ]]; then\n"
+  put("    *) options=\"--help --version\" ;;\n  esac\n");
+  put("  if [[ $COMP_CWORD -eq 1 && $word != -* ]]; then\n"
       "    options=\"{}\"\n"
       "  elif [[ $word != -* ]]; then\n"
       "    compopt -o filenames 2>/dev/null\n"
@@ -134,23 +132,21 @@ std::string zsh(const std::string& text) {
 }
 
 void print_zsh(const CLI::App& program) {
-  fmt::print("#compdef dapple\n# zsh completion of dapple, made by \"dapple document zsh\".\n");
-  fmt::print("local -a commands=(\n");
+  put("#compdef dapple\n# zsh completion of dapple, made by \"dapple document zsh\".\n");
+  put("local -a commands=(\n");
   for (const CLI::App* command : shown_commands(program))
-    fmt::print("  '{}:{}'\n", command->get_name(), zsh(command->get_description()));
-  fmt::print(
-      ")\nif (( CURRENT == 2 )); then\n  _describe command commands\n  return\nfi\n"
+    put("  '{}:{}'\n", command->get_name(), zsh(command->get_description()));
+  put(")\nif (( CURRENT == 2 )); then\n  _describe command commands\n  return\nfi\n"
       "case $words[2] in\n");
   for (const CLI::App* command : shown_commands(program)) {
-    fmt::print("  {}) _arguments", command->get_name());
+    put("  {}) _arguments", command->get_name());
     for (const CLI::Option* option : shown_options(*command))
       for (const std::string& flag : flags_of(*option))
-        fmt::print(
-            " \\\n    '*{}[{}]{}'", flag, zsh(option->get_description()),
+        put(" \\\n    '*{}[{}]{}'", flag, zsh(option->get_description()),
             takes_value(*option) ? fmt::format(":{}:_files", zsh(option->get_type_name())) : "");
-    fmt::print(" \\\n    '*:file:_files' ;;\n");
+    put(" \\\n    '*:file:_files' ;;\n");
   }
-  fmt::print("esac\n");
+  put("esac\n");
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "commands/command.hpp"
 #include "commands/render/shot.hpp"
 #include "commands/statistics_text.hpp"
+#include "commands/tell.hpp"
 #include "dapple/bvh.hpp"
 #include "dapple/error.hpp"
 
@@ -174,7 +175,7 @@ void run_info(const InfoArguments& a) {
   if (!a.lights.empty()) use_lights(scene, load_lights(a.lights));
   merge_single_instances(scene);
   const auto json = report(scene, build_bvh(scene, a.cache));
-  fmt::print("{}", a.json ? json_text(json) : report_text(json));
+  put("{}", a.json ? json_text(json) : report_text(json));
 }
 
 }  // namespace

@@ -288,9 +288,8 @@ void run_points(const Arguments& a) {
                                                            write_seconds, seconds)));
   if (a.quiet) return;
   for (const std::string& note : result.notes) tell("note: {}\n", note);
-  if (!result.bias.empty()) fmt::print("means before their correction, RMSE after it:\n");
-  fmt::print(
-      "{}{} points; load {:.2f}, prepare {:.2f}, build {:.2f}, trace {:.2f}, total {:.2f} s\n"
+  if (!result.bias.empty()) put("means before their correction, RMSE after it:\n");
+  put("{}{} points; load {:.2f}, prepare {:.2f}, build {:.2f}, trace {:.2f}, total {:.2f} s\n"
       "wrote {}\n",
       bias_lines(result.bias), list.points.size(), load_seconds, result.prepare_seconds,
       result.build_seconds, result.trace_seconds, seconds, a.output);

@@ -7,6 +7,7 @@
 
 #include "commands/arguments/output_paths.hpp"
 #include "commands/command.hpp"
+#include "commands/tell.hpp"
 #include "dapple/error.hpp"
 #include "scene/procedural/procedural.hpp"
 
@@ -58,8 +59,8 @@ Run add_scene_command(CLI::App& app) {
     std::size_t triangles = 0, segments = 0;
     for (const Mesh& mesh : scene.meshes)
       (mesh.has_strands() ? segments : triangles) += mesh.primitive_count();
-    fmt::print("wrote {}: {} triangles, {}{} instances\n", a->output, triangles,
-               segments > 0 ? fmt::format("{} segments, ", segments) : "", scene.instances.size());
+    put("wrote {}: {} triangles, {}{} instances\n", a->output, triangles,
+        segments > 0 ? fmt::format("{} segments, ", segments) : "", scene.instances.size());
   };
 }
 

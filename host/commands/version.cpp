@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "commands/command.hpp"
+#include "commands/tell.hpp"
 #include "dapple/device.hpp"
 #include "dapple/error.hpp"
 
@@ -27,23 +28,23 @@ int add_device_library(dl_phdr_info* info, std::size_t, void* found) {
 void print_devices() {
   try {
     for (const DeviceInfo& device : list_devices())
-      fmt::print("device: {}; {}, driver {}\n", device.name, device.platform, device.driver);
+      put("device: {}; {}, driver {}\n", device.name, device.platform, device.driver);
   } catch (const Error& error) {
-    fmt::print("device: none; {}\n", error.what());
+    put("device: none; {}\n", error.what());
   }
   std::vector<std::string> libraries;
   dl_iterate_phdr(add_device_library, &libraries);
-  for (const std::string& path : libraries) fmt::print("device library: {}\n", path);
+  for (const std::string& path : libraries) put("device library: {}\n", path);
 }
 
 }  // namespace
 
 void print_version(bool verbose) {
-  fmt::print("dapple {}\n", DAPPLE_VERSION);
+  put("dapple {}\n", DAPPLE_VERSION);
   if (!verbose) return;
-  fmt::print("build: {}\ncompiler: {}\n", DAPPLE_BUILD, DAPPLE_COMPILER);
-  fmt::print("libraries: fmt {}.{}.{}, CLI11 {}\n", FMT_VERSION / 10000, FMT_VERSION / 100 % 100,
-             FMT_VERSION % 100, CLI11_VERSION);
+  put("build: {}\ncompiler: {}\n", DAPPLE_BUILD, DAPPLE_COMPILER);
+  put("libraries: fmt {}.{}.{}, CLI11 {}\n", FMT_VERSION / 10000, FMT_VERSION / 100 % 100,
+      FMT_VERSION % 100, CLI11_VERSION);
   print_devices();
 }
 

@@ -133,14 +133,12 @@ void transform_vertices(Mesh& mesh, std::size_t first, const M44f& to_world) {
   });
 }
 
-// Appends the indices. A mirroring matrix reverses the winding of triangles: two corners of each
+// A mirroring matrix reverses the winding of triangles: two corners of each, from index `first` on,
 // change places, so that the front stays the front.
-void append_indices(Mesh& merged, const Mesh& mesh, std::uint32_t offset, bool mirrored) {
-  const std::size_t first = merged.indices.size();
-  for (const std::uint32_t index : mesh.indices) merged.indices.push_back(index + offset);
-  if (!mirrored || mesh.has_strands()) return;
-  for (std::size_t i = first; i < merged.indices.size(); i += 3)
-    std::swap(merged.indices[i + 1], merged.indices[i + 2]);
+void keep_fronts(Mesh& mesh, std::size_t first, const M44f& to_world) {
+  if (mesh.has_strands() || Imath::M44d(to_world).determinant() >= 0) return;
+  for (std::size_t i = first; i < mesh.indices.size(); i += 3)
+    std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
 }
 
 void append_placed(Mesh& merged, const Mesh& mesh, const M44f& to_world, const Totals& totals) {
@@ -154,8 +152,10 @@ void append_placed(Mesh& merged, const Mesh& mesh, const M44f& to_world, const T
     merged.normals.resize(merged.positions.size(), V3f(0, 0, 0));
   }
   transform_vertices(merged, first, to_world);
-  append_indices(merged, mesh, static_cast<std::uint32_t>(first),
-                 Imath::M44d(to_world).determinant() < 0);
+  const std::size_t first_index = merged.indices.size();
+  const auto offset = static_cast<std::uint32_t>(first);
+  for (const std::uint32_t index : mesh.indices) merged.indices.push_back(index + offset);
+  keep_fronts(merged, first_index, to_world);
   merged.materials.insert(merged.materials.end(), mesh.materials.begin(), mesh.materials.end());
   if (totals.uvs) {
     merged.uvs.insert(merged.uvs.end(), mesh.uvs.begin(), mesh.uvs.end());
@@ -195,6 +195,7 @@ Mesh build_merged(Scene& scene, const std::vector<Instance>& instances,
     if (last_use && instances.size() == 1) {
       merged = std::move(mesh);
       transform_vertices(merged, 0, instance.to_world);
+      keep_fronts(merged, 0, instance.to_world);
       mark_object(merged, instance.object);
       return merged;
     }

@@ -186,6 +186,14 @@ TEST(InsideSamples, AFloorIsNotDarkerAtItsVerticesBelowABox) {
   }
 }
 
+TEST(ClosedGeometry, AMirroredMeshThatIsMergedAloneSurrounds) {
+  Scene scene = scene_of(box_mesh({-1, -1, -1}, {1, 1, 1}));
+  scene.instances.at(0).to_world.setScale(V3f(-1, 1, 1));
+  merge_single_instances(scene);
+  EXPECT_EQ(scene.instances.at(0).to_world, M44f());
+  EXPECT_EQ(surrounding_directions(scene, {0, 0, 0}), 100);
+}
+
 // A box that is placed once is merged with the floor.
 TEST(InsideSamples, AMirroredBoxHidesAsABoxDoes) {
   Scene box = flat_box(-1);

@@ -121,6 +121,7 @@ TEST_F(GoodValues, OfRenderMakeAPicture) {
   for (const std::string& options : kPictures) run("render" + kTree + options);
   run("render" + kTree + kSaved + "-o d.exr --checkpoint d.ckpt --checkpoint-every 5m");
   run("render" + kTree + kSaved + "-o h.exr --resume d.ckpt");
+  run("render" + kTree + kSaved + "-o h.exr --resume-or-begin d.ckpt");
   run("render" + kTree +
       "-o 'f.#.exr' --frames 1-2 --animate-seed --fps 30 --passes ao,motion,visits "
       "--target-rmse 0.1");
@@ -146,6 +147,7 @@ TEST_F(GoodValues, OfPlanAreThoseOfRenderButForWhatItRefuses) {
   for (const auto& [refused, message] :
        {std::pair{"--deep d.exr", "dapple plan knows no deep files"},
         {"--resume d.ckpt", "dapple plan plans whole renders"},
+        {"--resume-or-begin d.ckpt", "dapple plan plans whole renders"},
         {"--target-rmse 0.1", "dapple plan needs --spp"},
         {"--target-error 0.2 --max-spp 32", "dapple plan needs --spp"},
         {"--frame 0 --shutter 0,0.5 --motion-samples 2",

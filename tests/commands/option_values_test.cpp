@@ -33,9 +33,12 @@ const std::vector<std::pair<std::string, std::string>> kCommands = {
 
 /// Options that take any text, most of them paths.
 const std::set<std::string> kFreeText = {
-    "--output", "--half",       "--deep",  "--png",        "--camera",     "--lights",    "--dome",
-    "--device", "--kernel-dir", "--cache", "--resume",     "--stats-json", "--occluders", "--html",
-    "--at",     "--suns",       "--layer", "--checkpoint", "--animation",  "--sky",
+    "--output",          "--half",       "--deep",      "--png",
+    "--camera",          "--lights",     "--dome",      "--device",
+    "--kernel-dir",      "--cache",      "--resume",    "--stats-json",
+    "--occluders",       "--html",       "--at",        "--suns",
+    "--layer",           "--checkpoint", "--animation", "--sky",
+    "--resume-or-begin",
 };
 
 TEST_F(OptionValues, AreOfEveryCommand) {

@@ -57,6 +57,20 @@ TEST_F(ProcessLimits, ADaemonWithNothingOpenIsDoneWhenItsPictureIs) {
   EXPECT_TRUE(contains(run.err, "cannot write to the standard output")) << run.err;
 }
 
+TEST_F(ProcessLimits, ALostReaderOfMuchTextDoesNotHideTheResult) {
+  ASSERT_EQ(render("", "").code, 0);
+  ASSERT_EQ(dapple("render 'scene:tree?leaves=200' --width 8 --height 8 --spp 1 -q -o b.exr").code,
+            0);
+  const std::string lost = "bash -c '\"$0\" \"$@\" | true; exit ${PIPESTATUS[0]}'";
+  EXPECT_EQ(dapple("compare out.exr b.exr --max-rmse 0 --json", lost).code, 5);
+  EXPECT_EQ(dapple("render 'scene:tree?leaves=20' --width 8 --height 8 --spp 1 --frames 1-3 "
+                   "-o f.#.exr",
+                   "bash -c 'stdbuf -oL \"$0\" \"$@\" | true; exit ${PIPESTATUS[0]}'")
+                .code,
+            0);
+  EXPECT_EQ(read_exr(path("f.3.exr")).width, 8);
+}
+
 TEST_F(ProcessLimits, ALostReaderDoesNotStopTheWork) {
   for (const char* lost : {"2>&1", "2>/dev/null"}) {
     const Outcome run = render(

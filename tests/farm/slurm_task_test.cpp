@@ -3,7 +3,6 @@
 // it queues itself again.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -72,24 +71,11 @@ TEST_F(SlurmTask, AFirstStartRemovesWhatAnEarlierJobLeft) {
 TEST_F(SlurmTask, ARestartGoesOnOrKnowsThatItWasDone) {
   std::ofstream(path("f_0003.exr.ckpt")) << "state";
   EXPECT_EQ(frame(1), 0);
-  EXPECT_TRUE(contains(bytes_of(path("arguments")), "--resume f_0003.exr.ckpt"));
+  EXPECT_TRUE(contains(bytes_of(path("arguments")), "--resume-or-begin f_0003.exr.ckpt"));
   std::filesystem::remove(path("arguments"));
   std::ofstream(path("f_0003.exr")) << "whole";
   EXPECT_EQ(frame(2), 0);
   EXPECT_FALSE(ran()) << "there is a result, and no checkpoint";
-}
-
-TEST_F(SlurmTask, ACheckpointThatDoesNotFitBeginsAnew) {
-  for (const char* code : {"1", "2"}) {
-    stub("srun", std::string("echo \"$@\" >> arguments; case \"$*\" in *--resume*) exit ") + code +
-                     " ;; esac");
-    std::filesystem::remove(path("arguments"));
-    std::ofstream(path("f_0003.exr.ckpt")) << "of another scene";
-    EXPECT_EQ(frame(1), 0);
-    const std::string arguments = bytes_of(path("arguments"));
-    EXPECT_EQ(std::count(arguments.begin(), arguments.end(), '\n'), 2) << arguments;
-    EXPECT_FALSE(contains(arguments.substr(arguments.find('\n')), "--resume")) << arguments;
-  }
 }
 
 TEST_F(SlurmTask, RendersWithoutCheckpointsBeginAgain) {
@@ -120,7 +106,7 @@ TEST_F(SlurmTask, TheCheckpointIsRemovedOnceTheFrameIsWhole) {
   EXPECT_EQ(queued_after(143, 1), "requeue 77\n");
   EXPECT_TRUE(std::filesystem::exists(path("f_0003.exr.ckpt")));
   EXPECT_EQ(queued_after(0, 1), "");
-  EXPECT_TRUE(contains(bytes_of(path("arguments")), "--resume f_0003.exr.ckpt"));
+  EXPECT_TRUE(contains(bytes_of(path("arguments")), "--resume-or-begin f_0003.exr.ckpt"));
   EXPECT_FALSE(std::filesystem::exists(path("f_0003.exr.ckpt")));
 }
 

@@ -68,7 +68,7 @@ void write_raw(FuzzedDataProvider& data) {
 void seal(const std::string& about, const std::vector<std::vector<std::byte>>& packed) {
   std::vector<Section> sections{as_section(about)};
   for (const auto& bytes : packed) sections.emplace_back(bytes);
-  write_sealed_file(path(), {"checkpoint", 4}, sections, Durable::no);
+  write_sealed_file(path(), {"checkpoint", 5}, sections, Durable::no);
 }
 
 std::vector<std::byte> any_bytes(FuzzedDataProvider& data) {

@@ -41,7 +41,7 @@ void write_any(FuzzedDataProvider& data, const std::string& file) {
     packed.push_back(compress(data.ConsumeBytes<std::byte>(40)));
   std::vector<Section> sections{as_section(about)};
   for (const auto& bytes : packed) sections.emplace_back(bytes);
-  write_sealed_file(file, {"checkpoint", 4}, sections, Durable::no);
+  write_sealed_file(file, {"checkpoint", 5}, sections, Durable::no);
 }
 
 PictureRecord any_picture(FuzzedDataProvider& data) {

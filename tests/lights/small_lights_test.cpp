@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "support/scenes/point_on_ground.hpp"
 
@@ -29,8 +30,15 @@ Light above(LightKind kind, float height, float radius) {
   return light;
 }
 
-/// The light's layer in a render of the point below it.
-double irradiance(Scene scene) { return value(render(scene, lights_only()).film, "light.above.R"); }
+/// The light's layer in a render of the point below it. `rays`: a multiple of 1,024, or 0.
+double irradiance(Scene scene, int rays = 0) {
+  RenderOptions options = lights_only();
+  if (rays > 0) {
+    options.spp = 1024;
+    options.light_rays = rays / 1024;
+  }
+  return value(render(std::move(scene), options).film, "light.above.R");
+}
 
 TEST(SmallLights, FarSpheresDisksAndRectsHaveTheIrradianceOfTheirSolidAngles) {
   for (const auto& [height, radius] :
@@ -53,6 +61,14 @@ TEST(SmallLights, LampsNearTheGroundOfALargeSceneAreNotCutOff) {
     scene.lights = {above(LightKind::sphere, height, 0.1f)};
     EXPECT_NEAR(irradiance(scene) / (kPi * 0.01 / (height * height)), 1, 2e-3) << height;
   }
+}
+
+// One pixel of 2^18 rays is one slice.
+TEST(SmallLights, ManyRaysToALampNearTheGroundOfALargeSceneAddUp) {
+  Scene scene = point_on_ground();
+  scene.meshes[0] = square_mesh(2e3f, 0, 1, 0);
+  scene.lights = {above(LightKind::sphere, 0.2f, 0.1f)};
+  EXPECT_NEAR(irradiance(scene, 1 << 18) / (kPi * 0.25), 1, 2e-3);
 }
 
 TEST(SmallLights, NarrowSunsHaveTheIrradianceOfTheirSolidAngle) {

@@ -344,8 +344,8 @@ MUTATIONS = [
         r"^Png\."),
     Mutation(
         "mirrored-meshes-are-inside-out", "host/scene/merge.cpp",
-        "if (!mirrored || mesh.has_strands()) return;",
-        "return;",
+        "if (mesh.has_strands() || Imath::M44d(to_world).determinant() >= 0) return;",
+        "if (mesh.has_strands() || Imath::M44d(to_world).determinant() < 0) return;",
         r"^(Merge|InsideSamples)\."),
     Mutation(
         "smooth-points-move-through-surfaces", "host/render/queries/free_shifts.cpp",

@@ -101,35 +101,32 @@ void write_statistics(const BakeResult& result, const BakeSeconds& seconds,
 
 void print_summary(const BakeStatistics& s, const BakeSeconds& seconds, const std::string& output) {
   for (const std::string& note : s.notes) tell("note: {}\n", note);
-  fmt::print(
-      "{} triangles, {}, {} rays from {} points ({:.1f} million rays per second)\n"
+  put("{} triangles, {}, {} rays from {} points ({:.1f} million rays per second)\n"
       "load {:.2f}, prepare {:.2f}, build {:.2f}, trace {:.2f}, write {:.2f}, total {:.2f} s\n",
       s.triangles, values_text(s), s.rays, s.points,
       s.seconds.trace > 0 ? static_cast<double>(s.rays) / s.seconds.trace * 1e-6 : 0.0,
       seconds.load, s.seconds.prepare + s.seconds.upload + s.seconds.kernel_build, s.seconds.build,
       s.seconds.trace, seconds.write, seconds.total);
   if (s.sampled_values > 0)
-    fmt::print("standard error of an AO value {:.3f}{} (root mean square)\n",
-               standard_error(s, s.squared_errors),
-               s.squared_light_errors > 0
-                   ? fmt::format(", of light {:.3f}", standard_error(s, s.squared_light_errors))
-                   : "");
-  fmt::print("{}", bias_lines(s.bias));
+    put("standard error of an AO value {:.3f}{} (root mean square)\n",
+        standard_error(s, s.squared_errors),
+        s.squared_light_errors > 0
+            ? fmt::format(", of light {:.3f}", standard_error(s, s.squared_light_errors))
+            : "");
+  put("{}", bias_lines(s.bias));
   if (s.inside_samples > 0)
-    fmt::print("{} samples lie inside closed geometry and do not count\n", s.inside_samples);
+    put("{} samples lie inside closed geometry and do not count\n", s.inside_samples);
   if (s.hidden_vertices > 0)
-    fmt::print("{} vertices lie inside closed geometry and have their neighbours' values\n",
-               s.hidden_vertices);
+    put("{} vertices lie inside closed geometry and have their neighbours' values\n",
+        s.hidden_vertices);
   if (s.hidden_texels > 0)
-    fmt::print("{} texels lie inside closed geometry and have the nearest value\n",
-               s.hidden_texels);
+    put("{} texels lie inside closed geometry and have the nearest value\n", s.hidden_texels);
   const std::size_t dark = s.dark_vertices + s.dark_texels, values = s.vertices + s.texels;
   if (static_cast<double>(dark) > kNotedDark * static_cast<double>(values))
-    fmt::print(
-        "{} of {} {} see nothing: AO below 0.001. In closed rooms --ao-distance limits what "
+    put("{} of {} {} see nothing: AO below 0.001. In closed rooms --ao-distance limits what "
         "occludes\n",
         dark, values, s.texels > 0 ? "texels" : "vertices");
-  fmt::print("wrote {}\n", output);
+  put("wrote {}\n", output);
 }
 
 }  // namespace dapple

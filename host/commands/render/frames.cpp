@@ -34,7 +34,7 @@ void check_sequence(const RenderArguments& a) {
                                               "frame's number, as in out.####.exr",
                                               flag, path));
   }
-  if (a.checkpoint.empty() && a.resume.empty()) return;
+  if (a.checkpoint.empty() && a.resume.empty() && a.resume_or_begin.empty()) return;
   throw Error(ErrorKind::usage,
               fmt::format("{} is for one image: leave --frames out and choose it by --frame",
                           a.checkpoint.empty() ? "--resume" : "--checkpoint"));
@@ -103,7 +103,8 @@ void check_files(const std::vector<Frame>& frames, const RenderArguments& a) {
   for (const Frame& frame : frames)
     check_outputs(outputs_of(frame, a), &frame == &frames.front() ? Folders::tidy : Folders::leave);
   check_files_spare(frames, a, inputs);
-  if (!a.resume.empty()) check_resumed_spare(outputs_of(frames[0], a), a.resume);
+  for (const std::string& resumed : {a.resume, a.resume_or_begin})
+    if (!resumed.empty()) check_resumed_spare(outputs_of(frames[0], a), resumed);
 }
 
 void check_files_spare(const std::vector<Frame>& frames, const RenderArguments& a,

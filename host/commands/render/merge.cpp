@@ -54,10 +54,10 @@ bool has_heat_map(const Merge& merge, const RenderArguments& files) {
 
 void print(const Merge& merge, const MergeArguments& a) {
   for (const std::string& note : merge.result.statistics.notes) tell("note: {}\n", note);
-  fmt::print("merged {} part{}, {} of {} samples per pixel; wrote {}{}{}\n", a.parts.size(),
-             a.parts.size() == 1 ? "" : "s", merge.missing.empty() ? "all" : "not all", merge.spp,
-             a.files.output, a.files.png.empty() ? "" : " and " + a.files.png,
-             has_heat_map(merge, a.files) ? " and " + visits_path(a.files.png) : "");
+  put("merged {} part{}, {} of {} samples per pixel; wrote {}{}{}\n", a.parts.size(),
+      a.parts.size() == 1 ? "" : "s", merge.missing.empty() ? "all" : "not all", merge.spp,
+      a.files.output, a.files.png.empty() ? "" : " and " + a.files.png,
+      has_heat_map(merge, a.files) ? " and " + visits_path(a.files.png) : "");
 }
 
 /// The statistics of a render. Parts do not know the scene, nor the seconds of their renders: these

@@ -267,7 +267,7 @@ void run_plan(RenderArguments a) {
                 "motion");
   if (options.deep)
     throw Error(ErrorKind::usage, "dapple plan knows no deep files: leave --deep out");
-  if (!a.resume.empty())
+  if (!a.resume.empty() || !a.resume_or_begin.empty())
     throw Error(ErrorKind::usage, "dapple plan plans whole renders: leave --resume out");
   to_format(a);  // checks it before anything is traced
   const std::vector<OutputPath> outputs = outputs_of(a);
@@ -291,7 +291,7 @@ void run_plan(RenderArguments a) {
   });
   if (!plan) return;
   if (!a.stats_json.empty()) write_whole_file(a.stats_json, json_text(plan_json(*plan)));
-  if (!a.quiet) fmt::print("{}", plan_text(*plan));
+  if (!a.quiet) put("{}", plan_text(*plan));
 }
 
 }  // namespace
@@ -300,8 +300,8 @@ Run add_plan_command(CLI::App& app) {
   auto a = std::make_shared<RenderArguments>();
   add_render_options(app, *a);
   app.get_option("--output")->required(false);
-  for (const char* refused : {"--deep", "--resume", "--target-rmse", "--target-error", "--max-spp",
-                              "--shutter", "--motion-samples"})
+  for (const char* refused : {"--deep", "--resume", "--resume-or-begin", "--target-rmse",
+                              "--target-error", "--max-spp", "--shutter", "--motion-samples"})
     app.get_option(refused)->group("");  // not in the help; run_plan() says why
   app.footer(
       "Takes the options of dapple render, but for targets, shutters, deep files and --resume, and "

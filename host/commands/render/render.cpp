@@ -36,12 +36,29 @@ double since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+/// The checkpoint that the render goes on from, if there is one.
+std::string resumed_file(const RenderArguments& a) {
+  return std::filesystem::exists(a.resume_or_begin) ? a.resume_or_begin : a.resume;
+}
+
 RenderControl to_control(const RenderArguments& a, ProgressBar& progress) {
+  const std::string resumed = resumed_file(a);
   RenderControl control{progress.callback(), save_when_interrupted(), a.checkpoint,
-                        parse_seconds("--checkpoint-every", a.checkpoint_every), a.resume};
+                        parse_seconds("--checkpoint-every", a.checkpoint_every), resumed};
   control.skip_film = is_late;
-  if (!a.checkpoint.empty()) control.progress = end_early(a.checkpoint, a.resume, control.progress);
+  if (!a.checkpoint.empty()) control.progress = end_early(a.checkpoint, resumed, control.progress);
   return control;
+}
+
+/// Whether the checkpoint does not fit, and the render may begin anew. Says so.
+bool begins_anew(const Error& error, const RenderArguments& a) {
+  if (a.resume_or_begin.empty() || !std::string_view(error.what()).starts_with("--resume "))
+    return false;
+  tell("note: {}; begins anew\n", error.what());
+  // Or else it would be taken for this render's, if that is interrupted.
+  std::error_code ignored;
+  if (a.checkpoint == a.resume_or_begin) std::filesystem::remove(a.checkpoint, ignored);
+  return true;
 }
 
 /// Notes of the result also tell names of layers that are not there.
@@ -99,15 +116,14 @@ void print_summary(const RenderStatistics& s, const Frame& frame, std::optional<
   const bool is_shown = exposure && !frame.png.empty();
   const std::string stops = is_shown ? fmt::format("; --exposure {:.2f}", *exposure) : "";
   if (frame.title.empty()) {
-    fmt::print("{}wrote {}{}\n", statistics_text(s), files, stops);
+    put("{}wrote {}{}\n", statistics_text(s), files, stops);
     return;
   }
-  fmt::print(
-      "{}, at {:.3f} s: load {:.2f}, build {:.2f}, refit {:.2f}, trace {:.2f}, total {:.2f} s; "
+  put("{}, at {:.3f} s: load {:.2f}, build {:.2f}, refit {:.2f}, trace {:.2f}, total {:.2f} s; "
       "wrote {}{}\n",
       frame.title, *frame.seconds, s.seconds.load, s.seconds.build + s.seconds.prefilter,
       s.seconds.refit, s.seconds.trace, s.seconds.total, files, stops);
-  std::fflush(stdout);
+  put_now();
 }
 
 /// Of a render that had no time for its picture.
@@ -206,8 +222,15 @@ void run_render(const RenderArguments& a) {
     control.part = is_part_path(frame.output) ? frame.output : "";
     control.settings = settings_of(shot, frame);
     if (a.animate_seed) options.seed = a.options.seed + static_cast<std::uint32_t>(frame.number);
-    RenderResult result =
-        render_frame(a, frame, shot, std::move(scene), renderer, options, control);
+    RenderResult result;
+    try {
+      result = render_frame(a, frame, shot, std::move(scene), renderer, options, control);
+    } catch (const Error& error) {
+      if (!begins_anew(error, a)) throw;
+      control.resume.clear();
+      result = render_frame(a, frame, shot, shot.frame(first_seconds(a, frame)), renderer, options,
+                            control);
+    }
     slices_are_traced();
     progress.clear();
     RenderStatistics& statistics = result.statistics;

@@ -146,10 +146,14 @@ void add_checkpoint_options(CLI::App& app, RenderArguments& a) {
                  "Time between two saves: 30 or 30s (seconds), 5m, 1h")
       ->capture_default_str()
       ->needs(&checkpoint);
-  app.add_option(
+  CLI::Option& resume = *app.add_option(
       "--resume", a.resume,
       "Continue from this checkpoint, with the same scene and options; you may raise --spp and "
       "--max-spp, and lower the targets");
+  app.add_option("--resume-or-begin", a.resume_or_begin,
+                 "The same for scripts: begin anew, with a note, where the checkpoint is missing, "
+                 "damaged or of another scene or options")
+      ->excludes(&resume);
   app.add_option("--shard", a.shard,
                  "Trace only a part of the samples, for dapple merge: I/N, the I-th of N parts, as "
                  "in 2/8; --spp is that of the whole image");

@@ -30,7 +30,7 @@ struct RenderArguments {
   std::optional<double> fps;  ///< default 24
   std::string shutter;
   std::optional<int> motion_samples;
-  std::string checkpoint, checkpoint_every = "60s", resume, shard;
+  std::string checkpoint, checkpoint_every = "60s", resume, resume_or_begin, shard;
   SceneOptions scene_options;
   RenderOptions options;
   std::optional<float> fov;  ///< degrees; default: the camera's own, or 40

@@ -76,16 +76,19 @@ Irradiance irradiance_of(const LightRecord& light, const Box3f& bounds) {
   }
 }
 
-/// A power of two for which the smallest irradiance has `kSmallestBits` bits, and the largest
-/// `kLargestBits` at most, so that the sum of 2^19 rays fits 63 bits.
+/// A power of two for which the smallest irradiance has 28 bits, if then the largest has 35 at
+/// most: the sum of 2^24 rays of it stays below the limit. Lights that are so small against the
+/// scene that 12 bits ask for more may have up to 43, for 2^16 rays.
 float light_scale(const LightRecord& light, const Box3f& bounds) {
-  constexpr int kSmallestBits = 28, kLargestBits = 43, kLeast = 26, kMost = 100;
+  constexpr int kSmallestBits = 28, kLargestBits = 35, kFewBits = 12, kManyBits = 43;
+  constexpr int kLeast = 26, kMost = 100;
   const Irradiance irradiance = irradiance_of(light, bounds);
   int exponent = kLeast;
   if (irradiance.smallest > 0 && std::isfinite(irradiance.largest)) {
-    const int for_smallest = kSmallestBits - std::ilogb(irradiance.smallest);
-    const int for_largest = kLargestBits - std::ilogb(irradiance.largest);
-    exponent = std::clamp(std::min(for_smallest, for_largest), kLeast, kMost);
+    const int smallest = std::ilogb(irradiance.smallest), largest = std::ilogb(irradiance.largest);
+    exponent = std::clamp(std::max(std::min(kSmallestBits - smallest, kLargestBits - largest),
+                                   std::min(kFewBits - smallest, kManyBits - largest)),
+                          kLeast, kMost);
   }
   return static_cast<float>(std::ldexp(1.0, exponent));
 }

@@ -33,7 +33,7 @@ struct FilmScales {
 
 /// Returns the scales for a scene in `bounds` and its lights. The irradiance of a light of radiance
 /// 1 at the farthest point of `bounds` has 28 bits, so that what a dark surface reflects of it has
-/// enough, or fewer if what it gives the nearest point would become too large.
+/// enough, or fewer, 12 if possible, if what it gives the nearest point would become too large.
 FilmScales film_scales(const View& view, const Box3f& bounds, std::span<const LightRecord> lights);
 
 /// Lights that share a layer, and the luminances of their radiances.

@@ -20,7 +20,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr SealedKind kKind{"checkpoint", 4};
+constexpr SealedKind kKind{"checkpoint", 5};
 constexpr std::size_t kFirstGroup = 4;  ///< section of the first group
 
 /// Pixels have at most 2^20 samples, and slices are not larger.

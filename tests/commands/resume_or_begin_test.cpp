@@ -1,0 +1,57 @@
+// --resume-or-begin: goes on from a checkpoint that fits, and begins anew where it is missing,
+// damaged or of another scene; other failures stay failures.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "support/programs/program_run.hpp"
+
+namespace dapple {
+namespace {
+
+using namespace film_test;
+using namespace program_test;
+
+class ResumeOrBegin : public ProgramRun {
+ protected:
+  [[nodiscard]] Outcome resumed(const std::string& more = "",
+                                const std::string& scene = "leaves=500") const {
+    return dapple("render 'scene:tree?" + scene +
+                  "' --width 16 --height 12 --spp 8 --report-bias 0 -o b.exr --checkpoint a.ckpt "
+                  "--resume-or-begin a.ckpt " +
+                  more);
+  }
+};
+
+TEST_F(ResumeOrBegin, GoesOnOrBeginsAnewWithTheSameBits) {
+  const Outcome missing = resumed();
+  EXPECT_EQ(missing.code, 0);
+  EXPECT_FALSE(contains(missing.err, "begins anew")) << missing.err;
+  const std::string whole = bytes_of(path("b.exr"));
+  const Outcome again = resumed();
+  EXPECT_TRUE(contains(again.err, "went on from")) << again.err;
+  EXPECT_TRUE(bytes_of(path("b.exr")) == whole);
+  std::filesystem::resize_file(path("a.ckpt"), 1000);
+  const Outcome damaged = resumed();
+  EXPECT_EQ(damaged.code, 0);
+  EXPECT_TRUE(contains(damaged.err, "note: --resume a.ckpt: damaged")) << damaged.err;
+  EXPECT_TRUE(contains(damaged.err, "; begins anew")) << damaged.err;
+  EXPECT_TRUE(bytes_of(path("b.exr")) == whole);
+  const Outcome changed = resumed("", "leaves=400");
+  EXPECT_EQ(changed.code, 0);
+  EXPECT_TRUE(contains(changed.err, "note: --resume a.ckpt: ")) << changed.err;
+  EXPECT_FALSE(bytes_of(path("b.exr")) == whole);
+}
+
+TEST_F(ResumeOrBegin, OtherFailuresLeaveTheCheckpoint) {
+  ASSERT_EQ(resumed().code, 0);
+  const std::string saved = bytes_of(path("a.ckpt"));
+  expect_failure(resumed("--device nothing"), 4, "nothing");
+  expect_failure(resumed("--frames 1-2"), 2, "--frames");
+  expect_failure(resumed("--resume a.ckpt"), 2, "--resume");
+  EXPECT_TRUE(bytes_of(path("a.ckpt")) == saved);
+}
+
+}  // namespace
+}  // namespace dapple
