@@ -8,6 +8,7 @@
 
 #include "device/driver_needs.hpp"
 #include "device/environment_while.hpp"
+#include "device/lent_pages.hpp"
 #include "device/opencl.hpp"
 #include "device/page_pool.hpp"
 #include "device/platforms.hpp"
@@ -60,23 +61,6 @@ cl::Context make_context(const cl::Device& device) {
 cl_int compile(const cl::Program& program, const cl::Device& device,
                const std::string& options) noexcept {
   return clBuildProgram(program(), 1, &device(), options.c_str(), nullptr, nullptr);
-}
-
-/// Lends `pages` to `buffer`. They return to `pool` when OpenCL destroys the buffer, which is after
-/// its last command.
-void hand_over(std::unique_ptr<Pages> pages, cl::Buffer& buffer,
-               const std::shared_ptr<PagePool>& pool) {
-  struct Loan {
-    std::unique_ptr<Pages> pages;
-    std::shared_ptr<PagePool> pool;
-  };
-  auto loan = std::make_unique<Loan>(Loan{std::move(pages), pool});
-  const auto end_loan = [](cl_mem, void* data) noexcept {
-    const std::unique_ptr<Loan> ended(static_cast<Loan*>(data));
-    ended->pool->give_back(std::move(ended->pages));
-  };
-  buffer.setDestructorCallback(end_loan, loan.get());
-  (void)loan.release();
 }
 
 }  // namespace

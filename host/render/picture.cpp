@@ -43,15 +43,14 @@ class PictureTracer {
         hit_sums_(lookups, layout.pixels, state_.first_sample) {
     camera_.keep_hits = layout.shading() || looks_up_hits_;
     if (looks_up_hits_) camera_.medium_error = 0;  // a medium's surfaces belong to no primitive
-    const std::size_t rays = static_cast<std::size_t>(
-        std::max({1, options.ao ? options.ao_rays : 1, light_count_ ? options.light_rays : 1}));
-    if (state_.slice_samples == 0)
-      state_.slice_samples =
-          samples_of_slice(device.info(), options, light_count_, rays, layout.pixels);
+    const auto rays = static_cast<std::size_t>(
+        std::max(options.ao ? options.ao_rays : 1, light_count_ ? options.light_rays : 1));
+    std::uint32_t& samples = state_.slice_samples;
+    if (samples == 0)
+      samples = samples_of_slice(device.info(), options, light_count_, rays, layout.pixels);
     queues_ = make_queues(context_, state_.slice_samples, rays);
     queues_.work = context_.allocate(layout.pixels * sizeof(PixelWork));
-    if (layout.albedo)
-      queues_.albedo = context_.allocate(state_.slice_samples * sizeof(SampleAlbedo));
+    queues_.albedo = context_.allocate(layout.albedo ? samples * sizeof(SampleAlbedo) : 0);
     film_.sums = context_.allocate_zeros(layout.sum_bytes());
     film_.squares = context_.allocate_zeros(layout.square_bytes());
     if (has_bias(options) && options.report_bias > 0) {

@@ -63,11 +63,11 @@ void add_sampling_options(CLI::App& app, RenderArguments& a) {
 
 void add_layer_options(CLI::App& app, RenderArguments& a) {
   RenderOptions& o = a.options;
-  app.add_option("--passes", a.passes,
-                 "With commas between: ao, light, albedo (colours), beauty (what the sky and each "
-                 "light add to RGB), back (AO and light of the side that faces away from the "
-                 "camera), motion (image motion until the next frame, in "
-                 "pixels), visits (BVH nodes and triangles that rays tested)")
+  app.add_option(
+         "--passes", a.passes,
+         "With commas between: ao, light, albedo (colours), beauty (what the sky and each "
+         "light add to RGB), back (AO and light of the side that faces away from the "
+         "camera), motion (pixels until the next frame), visits (nodes and triangles tested)")
       ->capture_default_str();
   app.add_option("--back-every", o.back_every,
                  "With --passes back: one in so many samples is traced on that side, too: 1, 2, 4, "
@@ -93,9 +93,8 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
   RenderOptions& o = a.options;
   app.add_option("--width", o.width, "Image width, pixels")->capture_default_str();
   app.add_option("--height", o.height, "Image height, pixels")->capture_default_str();
-  app.add_option(
-      "--crop", a.crop,
-      "Render only this part: X0,Y0,X1,Y1, pixels from the top left, both ends included");
+  app.add_option("--crop", a.crop,
+                 "Only this part: X0,Y0,X1,Y1, pixels from the top left, both ends included");
   add_sampling_options(app, a);
   add_layer_options(app, a);
 }
@@ -151,8 +150,7 @@ void add_checkpoint_options(CLI::App& app, RenderArguments& a) {
       "Continue from this checkpoint, with the same scene and options; you may raise --spp and "
       "--max-spp, and lower the targets");
   app.add_option("--resume-or-begin", a.resume_or_begin,
-                 "The same for scripts: begin anew, with a note, where the checkpoint is missing, "
-                 "damaged or of another scene or options")
+                 "The same for scripts: begin anew where it is missing, damaged or does not fit")
       ->excludes(&resume);
   app.add_option("--shard", a.shard,
                  "Trace only a part of the samples, for dapple merge: I/N, the I-th of N parts, as "
@@ -324,10 +322,8 @@ void check_half_layer(const std::string& name) {
       "all", "RGBA", "albedo", "beauty", "ao", "bent", "light", "N", "Ng", "error", "visits"};
   for (const std::string& layer : kLayers)
     if (name == layer || name.starts_with(layer + ".")) return;
-  throw Error(
-      ErrorKind::usage,
-      fmt::format("--half {}: there is no such layer; there are {}, light.NAME and beauty.NAME",
-                  name, fmt::join(kLayers, ", ")));
+  throw Error(ErrorKind::usage, fmt::format("--half {}: there is no such layer; there are {}", name,
+                                            fmt::join(kLayers, ", ")));
 }
 
 ExrFormat to_format(const RenderArguments& a) {
