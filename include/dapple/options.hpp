@@ -120,9 +120,9 @@ struct RenderOptions {
   /// is still measured.
   bool keep_footprint = false;
   Normals normals = Normals::shading;
-  bool ao = true;      ///< make the AO pass
-  bool light = true;   ///< make the light passes
-  bool albedo = true;  ///< make the layer of colours; SceneOptions::colors reads them
+  bool ao = true;       ///< make the AO pass
+  bool light = true;    ///< make the light passes
+  bool albedo = true;   ///< make the layer of colours; SceneOptions::colors reads them
   bool beauty = false;  ///< make layers of what each light adds to RGB
   bool back = false;    ///< make layers of what reaches the other side of surfaces
   /// With `back`: one in so many samples is traced on that side, too, a power of two in [1, 64].

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "passes/ray_packets.hpp"
 #include "support/scenes/scene_on_device.hpp"
 
 namespace dapple {
@@ -94,8 +95,12 @@ TEST_P(TraversalScenes, KernelsAgreeWithTheScalarTraversalRayByRay) {
         a.different, a.mean_difference, a.kernel_visits / kRays, a.host_visits / kRays,
         a.kernel_tests / kRays, a.host_tests / kRays);
     EXPECT_LE(a.different, kFlips);
-    EXPECT_NEAR(a.kernel_visits, a.host_visits, 0.01 * a.host_visits);
-    EXPECT_NEAR(a.kernel_tests, a.host_tests, 0.01 * a.host_tests);
+    // Scalar rays that are stopped go on to the ends of their rounds.
+    const double more = traces_scalar(device().context()) ? 0.1 : 0.0;
+    EXPECT_GE(a.kernel_visits, 0.99 * a.host_visits);
+    EXPECT_LE(a.kernel_visits, (1.01 + more) * a.host_visits);
+    EXPECT_GE(a.kernel_tests, 0.99 * a.host_tests);
+    EXPECT_LE(a.kernel_tests, (1.01 + more) * a.host_tests);
   }
 }
 
