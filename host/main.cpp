@@ -75,7 +75,7 @@ void print_nowhere(int) {
   errno = error;
 }
 
-/// What a standard library's failure means here.
+/// Says what failed in the standard library; returns the exit code.
 int report(const std::system_error& error) {
   if (error.code() != std::errc::resource_unavailable_try_again) return say(error.what());
   return say(

@@ -35,12 +35,15 @@ TEST_F(ResumeOrBegin, GoesOnOrBeginsAnewWithTheSameBits) {
   std::filesystem::resize_file(path("a.ckpt"), 1000);
   const Outcome damaged = resumed();
   EXPECT_EQ(damaged.code, 0);
-  EXPECT_TRUE(contains(damaged.err, "note: --resume a.ckpt: damaged")) << damaged.err;
-  EXPECT_TRUE(contains(damaged.err, "; begins anew")) << damaged.err;
+  EXPECT_TRUE(contains(damaged.err,
+                       "note: begins anew, keeps the checkpoint as a.ckpt.unfit, since --resume "
+                       "a.ckpt: damaged"))
+      << damaged.err;
+  EXPECT_EQ(bytes_of(path("a.ckpt.unfit")).size(), 1000u);
   EXPECT_TRUE(bytes_of(path("b.exr")) == whole);
   const Outcome changed = resumed("", "leaves=400");
   EXPECT_EQ(changed.code, 0);
-  EXPECT_TRUE(contains(changed.err, "note: --resume a.ckpt: ")) << changed.err;
+  EXPECT_TRUE(contains(changed.err, "since --resume a.ckpt: was made with")) << changed.err;
   EXPECT_FALSE(bytes_of(path("b.exr")) == whole);
 }
 

@@ -50,14 +50,17 @@ RenderControl to_control(const RenderArguments& a, ProgressBar& progress) {
   return control;
 }
 
-/// Whether the checkpoint does not fit, and the render may begin anew. Says so.
+/// Whether the checkpoint does not fit, and the render may begin anew. Says so, and moves a
+/// checkpoint aside that the render's own would replace.
 bool begins_anew(const Error& error, const RenderArguments& a) {
   if (a.resume_or_begin.empty() || !std::string_view(error.what()).starts_with("--resume "))
     return false;
-  tell("note: {}; begins anew\n", error.what());
-  // Or else it would be taken for this render's, if that is interrupted.
-  std::error_code ignored;
-  if (a.checkpoint == a.resume_or_begin) std::filesystem::remove(a.checkpoint, ignored);
+  const std::string aside = a.resume_or_begin + ".unfit";
+  std::error_code failure;
+  if (a.checkpoint == a.resume_or_begin) std::filesystem::rename(a.checkpoint, aside, failure);
+  const bool is_kept = a.checkpoint == a.resume_or_begin && !failure;
+  tell("note: begins anew{}, since {}\n", is_kept ? ", keeps the checkpoint as " + aside : "",
+       error.what());
   return true;
 }
 

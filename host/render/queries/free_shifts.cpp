@@ -1,7 +1,6 @@
 #include "render/queries/free_shifts.hpp"
 
 #include <cstdint>
-#include <limits>
 
 #include "dapple/render.hpp"
 #include "device/upload/scene_upload.hpp"
