@@ -1,5 +1,5 @@
-// Handles SIGINT, SIGTERM and SIGXCPU (ulimit -t): a render that has results finishes its slice and
-// saves them; otherwise the process ends at once. Only this file sets signal handlers.
+// Handles SIGINT, SIGTERM, SIGHUP and SIGXCPU (ulimit -t): a render that has results finishes its
+// slice and saves them; otherwise the process ends at once. Only this file sets signal handlers.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace dapple {
 
-/// Installs the handlers. The signals end the process with exit code 128 + signal (130, 143, 152):
+/// Installs the handlers. The signals end the process with exit code 128 + signal (129 to 152):
 /// at once until the function of save_when_interrupted() is called for the second time. Ignored
 /// signals stay ignored.
 void catch_interruptions();

@@ -17,7 +17,7 @@ class PlanInterruption : public film_test::FilmFile {
   /// Empty if there is none.
   [[nodiscard]] std::filesystem::path trial_folder() const {
     for (const auto& entry : std::filesystem::directory_iterator(path("tmp")))
-      if (entry.path().filename().string().starts_with("dapple-plan-")) return entry.path();
+      if (entry.path().filename().string().starts_with("dapple-run-")) return entry.path();
     return {};
   }
   [[nodiscard]] bool has_trial_folder() const { return !trial_folder().empty(); }
@@ -66,6 +66,19 @@ TEST_F(PlanInterruption, TwoSignalsDuringALaterTrialLeaveNoFolder) {
     EXPECT_FALSE(has_trial_folder());
   }
   EXPECT_TRUE(is_sent) << "no trial was followed by another";
+}
+
+TEST_F(PlanInterruption, WhatAKilledTrialLeftTheNextOneRemoves) {
+  std::filesystem::create_directory(path("tmp"));
+  const EnvironmentWhile folder("TMPDIR", path("tmp"));
+  RunningProgram killed({"plan", "scene:tree?leaves=50000", "--spp", "100000"}, path("log"));
+  ASSERT_TRUE(wait_until([&] { return has_trial_folder() || killed.has_ended(); }, kLongest));
+  killed.send(SIGKILL);
+  killed.wait();
+  ASSERT_TRUE(has_trial_folder());
+  RunningProgram next({"plan", "scene:tree?leaves=500", "--spp", "4"}, path("log"));
+  EXPECT_EQ(next.wait(), 0);
+  EXPECT_FALSE(has_trial_folder());
 }
 
 }  // namespace

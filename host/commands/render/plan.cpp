@@ -4,18 +4,14 @@
 // short.
 #include <fmt/format.h>
 #include <sys/resource.h>
-#include <sys/stat.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
-#include <random>
 
 #include "camera/view.hpp"
 #include "commands/arguments/option_text.hpp"
@@ -29,6 +25,7 @@
 #include "commands/tell.hpp"
 #include "dapple/error.hpp"
 #include "files/output_file.hpp"
+#include "files/private_folder.hpp"
 #include "film/film_memory.hpp"
 #include "sampling/shard.hpp"
 
@@ -90,30 +87,31 @@ RenderOptions trial_options(const RenderOptions& options, double rays) {
 }
 
 /// A folder for the trial's files, removed at the end. A signal handler can remove it only while it
-/// is empty, as it is while a trial is traced.
+/// is empty, as it is while a trial is traced; what a killed trial leaves, the next one removes.
 class TrialFolder {
  public:
   TrialFolder() {
     const char* set = std::getenv("TMPDIR");
     const std::string parent = set && *set ? set : "/tmp";
-    std::random_device random;
-    path_ = fmt::format("{}/dapple-plan-{:08x}{:08x}", parent, random(), random());
-    remove_when_interrupted(path_);  // before mkdir(): a signal may come right after it
-    if (mkdir(path_.c_str(), 0700) == 0) return;
-    const int reason = errno;
-    remove_when_interrupted("");
-    throw Error(ErrorKind::failed,
-                fmt::format("cannot make a folder in {} (TMPDIR, or else /tmp): {}", parent,
-                            std::strerror(reason)));
+    try {
+      std::filesystem::directory_iterator must_exist(parent);
+      folder_.emplace(parent);
+    } catch (const std::filesystem::filesystem_error& error) {
+      refuse(parent, error.code().message());
+    } catch (const Error& error) {
+      refuse(parent, error.what());
+    }
+    remove_when_interrupted(folder_->path().string());
   }
   ~TrialFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
+    folder_.reset();
     remove_when_interrupted("");
   }
   TrialFolder(const TrialFolder&) = delete;
   TrialFolder& operator=(const TrialFolder&) = delete;
-  [[nodiscard]] std::string file(const char* name) const { return path_ + "/" + name; }
+  [[nodiscard]] std::string file(const char* name) const {
+    return (folder_->path() / name).string();
+  }
   /// Removes a file of the folder; returns its size.
   [[nodiscard]] static double take_bytes(const std::string& file) {
     const auto bytes = static_cast<double>(std::filesystem::file_size(file));
@@ -122,7 +120,13 @@ class TrialFolder {
   }
 
  private:
-  std::string path_;
+  [[noreturn]] static void refuse(const std::string& parent, const std::string& reason) {
+    throw Error(ErrorKind::failed, fmt::format("cannot make a folder in {} (TMPDIR, or else /tmp): "
+                                               "{}",
+                                               parent, reason));
+  }
+
+  std::optional<PrivateFolder> folder_;
 };
 
 /// Of the process: the largest so far.

@@ -12,7 +12,7 @@
 #include <set>
 #include <string>
 
-#include "device/programs/private_folder.hpp"
+#include "files/private_folder.hpp"
 
 namespace dapple {
 

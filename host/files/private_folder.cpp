@@ -1,7 +1,7 @@
 // A lock shows whether the process that made a folder still runs. The operating system releases it
 // however the process ends, and unlike a process id it is valid in all containers that share the
 // parent folder. Locks of folders on network file systems are only visible on their own host.
-#include "device/programs/private_folder.hpp"
+#include "files/private_folder.hpp"
 
 #include <fcntl.h>
 #include <sys/file.h>
