@@ -18,6 +18,7 @@
 #include "bvh/build/quantize_boxes.hpp"
 #include "bvh/opacity/closed_surface.hpp"
 #include "bvh/opacity/wall.hpp"
+#include "bvh/opacity/welded_vertices.hpp"
 #include "bvh/storage/packed_strands.hpp"
 #include "dapple/error.hpp"
 
@@ -251,12 +252,14 @@ void build_triangles(const Mesh& mesh, const std::vector<float>& opacities,
   fill_boxes(mesh, opacities, boxes, [&](std::uint32_t t) { return triangle_box(mesh, t); });
   std::vector<bool> closed;
   std::vector<float> interior;
-  tbb::parallel_invoke([&] { built.tree = build_wide_tree(boxes, kLeafSize); },
-                       [&] {
-                         const OpaqueTriangles opaque(mesh, opacities);
-                         tbb::parallel_invoke([&] { closed = closed_triangles(opaque); },
-                                              [&] { interior = interior_triangles(opaque); });
-                       });
+  tbb::parallel_invoke(
+      [&] { built.tree = build_wide_tree(boxes, kLeafSize); },
+      [&] {
+        const OpaqueTriangles opaque(mesh, opacities);
+        const std::vector<std::uint32_t> welded = welded_vertices(opaque.positions());
+        tbb::parallel_invoke([&] { closed = closed_triangles(opaque, welded); },
+                             [&] { interior = interior_triangles(opaque, welded); });
+      });
   BlockLayout layout;
   tbb::parallel_invoke(
       [&] {

@@ -1,7 +1,9 @@
 #include "bvh/opacity/closed_surface.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 #include "bvh/opacity/connected_vertices.hpp"
 
@@ -11,28 +13,107 @@ namespace {
 /// Maximum length of the sum of a closed surface's area vectors, relative to its area.
 constexpr double kOpenShare = 0.1;
 
-}  // namespace
+struct SurfaceSum {
+  Imath::V3d vector{0, 0, 0};  ///< of area vectors
+  double area = 0;
 
-std::vector<bool> closed_triangles(const OpaqueTriangles& opaque) {
-  ConnectedVertices components = connect_triangles(
-      opaque.positions().size(), opaque.count(), [](std::size_t) { return true; },
-      [&](std::size_t t, int k) { return opaque.vertex(t, k); });
-  struct Sums {
-    Imath::V3d vector{0, 0, 0};
-    double area = 0;
-  };
-  std::vector<Sums> sums(opaque.positions().size());
+  [[nodiscard]] bool is_closed() const { return vector.length() < kOpenShare * area; }
+};
+
+/// Of each connected surface, by its root.
+std::vector<SurfaceSum> sums_of(const OpaqueTriangles& opaque, ConnectedVertices& surfaces) {
+  std::vector<SurfaceSum> sums(opaque.positions().size());
   for (std::size_t t = 0; t < opaque.count(); ++t) {
     const Imath::V3d vector(opaque.area_vector(t));
-    Sums& component = sums[components.root(opaque.vertex(t, 0))];
-    component.vector += vector;
-    component.area += vector.length();
+    SurfaceSum& sum = sums[surfaces.root(opaque.vertex(t, 0))];
+    sum.vector += vector;
+    sum.area += vector.length();
   }
+  return sums;
+}
+
+/// What has come with an edge, in an open-addressing hash table.
+class EdgeTable {
+ public:
+  struct Entry {
+    std::uint64_t edge = 0;    ///< 0: none
+    std::uint32_t vertex = 0;  ///< the first
+    std::uint32_t triangles = 0;
+  };
+  explicit EdgeTable(std::size_t edges) : entries_(std::bit_ceil(2 * edges + 1)) {}
+  Entry& find(std::uint64_t edge) {
+    std::size_t at = (edge * 0x9e3779b97f4a7c15u >> 20) & (entries_.size() - 1);
+    while (entries_[at].edge != edge && entries_[at].edge != 0)
+      at = (at + 1) & (entries_.size() - 1);
+    entries_[at].edge = edge;
+    return entries_[at];
+  }
+
+ private:
+  std::vector<Entry> entries_;
+};
+
+/// An edge of a triangle: the welded vertices of its ends, the smaller one in the upper half, and
+/// the vertex of one of them.
+struct SeamEdge {
+  std::uint64_t ends;
+  std::uint32_t vertex;
+};
+
+/// Edges of open surfaces whose ends are both at positions of several vertices.
+std::vector<SeamEdge> possible_seams(const OpaqueTriangles& opaque,
+                                     std::span<const std::uint32_t> welded,
+                                     ConnectedVertices& surfaces,
+                                     const std::vector<SurfaceSum>& sums) {
+  std::vector<bool> is_shared(welded.size());
+  bool any = false;
+  for (std::uint32_t v = 0; v < welded.size(); ++v) {
+    if (welded[v] == v) continue;
+    is_shared[v] = is_shared[welded[v]] = any = true;
+  }
+  std::vector<SeamEdge> edges;
+  for (std::size_t t = 0; any && t < opaque.count(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t v = opaque.vertex(t, k), w = opaque.vertex(t, (k + 1) % 3);
+      if (!is_shared[v] || !is_shared[w] || welded[v] == welded[w]) continue;
+      if (sums[surfaces.root(v)].is_closed()) break;
+      const auto [low, high] = std::minmax(welded[v], welded[w]);
+      edges.push_back({std::uint64_t{low} << 32 | high, v});
+    }
+  }
+  return edges;
+}
+
+/// Joins open surfaces along edges that two triangles have, by the positions of their ends. Leaves
+/// that touch at a point, or of which many share an edge, stay apart. False: none were joined.
+bool join_at_seams(const OpaqueTriangles& opaque, std::span<const std::uint32_t> welded,
+                   const std::vector<SurfaceSum>& sums, ConnectedVertices& surfaces) {
+  const std::vector<SeamEdge> edges = possible_seams(opaque, welded, surfaces, sums);
+  EdgeTable table(edges.size());
+  for (const SeamEdge& edge : edges) {
+    EdgeTable::Entry& entry = table.find(edge.ends);
+    if (entry.triangles++ == 0) entry.vertex = edge.vertex;
+  }
+  for (const SeamEdge& edge : edges) {
+    const EdgeTable::Entry& entry = table.find(edge.ends);
+    if (entry.triangles == 2) surfaces.join(edge.vertex, entry.vertex);
+  }
+  return !edges.empty();
+}
+
+}  // namespace
+
+std::vector<bool> closed_triangles(const OpaqueTriangles& opaque,
+                                   std::span<const std::uint32_t> welded) {
+  ConnectedVertices surfaces = connect_triangles(
+      opaque.positions().size(), opaque.count(), [](std::size_t) { return true; },
+      [&](std::size_t t, int k) { return opaque.vertex(t, k); });
+  std::vector<SurfaceSum> sums = sums_of(opaque, surfaces);
+  if (join_at_seams(opaque, welded, sums, surfaces)) sums = sums_of(opaque, surfaces);
   std::vector<bool> closed(opaque.count());
   bool any = false;
   for (std::size_t t = 0; t < closed.size(); ++t) {
-    const Sums& component = sums[components.root(opaque.vertex(t, 0))];
-    closed[t] = component.vector.length() < kOpenShare * component.area;
+    closed[t] = sums[surfaces.root(opaque.vertex(t, 0))].is_closed();
     any |= closed[t];
   }
   return any ? opaque.in_mesh(std::move(closed)) : std::vector<bool>{};

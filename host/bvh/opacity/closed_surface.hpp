@@ -2,6 +2,8 @@
 // so the opacity of a node must not count both.
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "bvh/opacity/opaque_triangles.hpp"
@@ -9,10 +11,13 @@
 namespace dapple {
 
 /// Returns which triangles of the mesh belong to closed surfaces: connected components of opaque
-/// triangles (shared vertex indices). The sum of the area vectors of a component must be shorter
-/// than a tenth of its area, so that twigs with open ends count. One entry a triangle of the mesh;
-/// empty if there are no closed surfaces.
-std::vector<bool> closed_triangles(const OpaqueTriangles& opaque);
+/// triangles. The sum of the area vectors of a component must be shorter than a tenth of its area,
+/// so that twigs with open ends count. Triangles are connected by vertices; those of open
+/// components also by edges whose ends are at equal positions (`welded`, of welded_vertices()),
+/// since exporters split vertices at seams and where shading is flat. One entry a triangle of the
+/// mesh; empty if there are no closed surfaces.
+std::vector<bool> closed_triangles(const OpaqueTriangles& opaque,
+                                   std::span<const std::uint32_t> welded);
 
 /// Projected areas along x, y, z of the surfaces in a node, each times its opacity.
 struct SurfaceAreas {

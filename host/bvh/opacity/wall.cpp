@@ -29,81 +29,28 @@ constexpr float kFlat = 0.7f;
 /// up to three (experiment 252).
 constexpr float kSmallInside = 4.0f;
 
-/// Positions are equal if they are on the same point of a grid of this many steps over the
-/// surfaces, or, if these are farther from the origin than they are wide, over that distance. So
-/// few that corners which differ by a rounding error are on two points in one of 128 coordinates at
-/// most: with 2^22 steps walls of such corners leaked.
-constexpr float kGridSteps = 131072.0f;
-
-/// Returns for each vertex a hash of its position; 0 only by chance. Of 64 bits: with 32, a fifth
-/// of the surfaces of 10 million vertices would share a hash with another one.
-std::vector<std::uint64_t> position_hashes(std::span<const V3f> positions) {
-  Box3f box;
-  for (const V3f& position : positions) box.extendBy(position);
-  float extent = 1e-30f;
-  for (int axis = 0; axis < 3 && !positions.empty(); ++axis)
-    extent = std::max({extent, box.max[axis] - box.min[axis], std::fabs(box.min[axis]),
-                       std::fabs(box.max[axis])});
-  const float scale = kGridSteps / extent;
-  const auto hash_of = [&](const V3f& position) {
-    std::uint64_t hash = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      const float steps = std::nearbyint((position[axis] - box.min[axis]) * scale);
-      hash = (hash ^ std::bit_cast<std::uint32_t>(steps + 0.0f)) * 0x9e3779b97f4a7c15u;
-      hash ^= hash >> 29;
-    }
-    return hash;
-  };
-  std::vector<std::uint64_t> hashes(positions.size());
-  std::transform(positions.begin(), positions.end(), hashes.begin(), hash_of);
-  return hashes;
+/// Spreads a vertex's number over all bits, so that those of different corners hardly ever add up
+/// to 0 (the finalizer of MurmurHash3).
+std::uint32_t hash_of(std::uint32_t vertex) {
+  std::uint32_t hash = (vertex + 1) * 0x9e3779b9u;
+  hash = (hash ^ hash >> 16) * 0x85ebca6bu;
+  hash = (hash ^ hash >> 13) * 0xc2b2ae35u;
+  return hash ^ hash >> 16;
 }
 
-/// For each corner, the exclusive or of the hashes of the corners that its triangles join it with.
-/// In a closed ring of triangles each of them occurs twice, so the result is 0. If all triangles
-/// face the same side, it is once the next corner and once the last one, so that the differences
-/// add up to 0, too. Corners are keys of an open-addressing hash table.
-class Rings {
- public:
-  explicit Rings(std::size_t corners)
-      : mask_(std::bit_ceil(2 * corners + 1) - 1), entries_(mask_ + 1) {}
-  void add(std::uint64_t corner, std::uint64_t next, std::uint64_t last) {
-    Entry& entry = entries_[find(corner)];
-    entry.ring ^= static_cast<std::uint32_t>(next ^ last);
-    entry.turn += static_cast<std::uint32_t>(next - last);
-  }
-  [[nodiscard]] bool is_closed(std::uint64_t corner) { return entries_[find(corner)].ring == 0; }
+/// The exclusive or of the hashes of the corners that a corner's triangles join it with. In a
+/// closed ring of triangles each of them occurs twice, so the result is 0. If all triangles face
+/// the same side, it is once the next corner and once the last one, so that the differences add up
+/// to 0, too.
+struct Ring {
+  std::uint32_t ring = 0, turn = 0;
 
-  [[nodiscard]] bool faces_one_side(std::uint64_t corner) {
-    return entries_[find(corner)].turn == 0;
+  void add(std::uint32_t next, std::uint32_t last) {
+    ring ^= hash_of(next) ^ hash_of(last);
+    turn += hash_of(next) - hash_of(last);
   }
-
-  /// Makes room for first_vertex(): the rings are gone.
-  void reset_to_vertices() {
-    for (Entry& entry : entries_) entry.ring = kNone;
-  }
-  /// The vertex that this was first called with for the corner.
-  std::uint32_t first_vertex(std::uint64_t corner, std::uint32_t vertex) {
-    std::uint32_t& first = entries_[find(corner)].ring;
-    if (first == kNone) first = vertex;
-    return first;
-  }
-
- private:
-  static constexpr std::uint32_t kNone = ~0u;
-  struct Entry {
-    std::uint64_t corner = 0;
-    std::uint32_t ring = 0, turn = 0;
-  };
-  /// The corner's entry, taken when it is new.
-  std::size_t find(std::uint64_t corner) {
-    std::size_t at = (corner >> 16) & mask_;
-    while (entries_[at].corner != corner && entries_[at].corner != 0) at = (at + 1) & mask_;
-    entries_[at].corner = corner;
-    return at;
-  }
-  std::size_t mask_;
-  std::vector<Entry> entries_;
+  [[nodiscard]] bool is_closed() const { return ring == 0; }
+  [[nodiscard]] bool faces_one_side() const { return turn == 0; }
 };
 
 /// Sums over the triangles of a connected surface.
@@ -190,17 +137,17 @@ std::vector<float> chords_of(const OpaqueTriangles& opaque, const std::vector<bo
 
 }  // namespace
 
-std::vector<float> interior_triangles(const OpaqueTriangles& opaque) {
-  const std::vector<std::uint64_t> hashes = position_hashes(opaque.positions());
-  const auto corner = [&](std::size_t t, int k) { return hashes[opaque.vertex(t, k % 3)]; };
-  Rings rings(hashes.size());
+std::vector<float> interior_triangles(const OpaqueTriangles& opaque,
+                                      std::span<const std::uint32_t> welded) {
+  const auto corner = [&](std::size_t t, int k) { return welded[opaque.vertex(t, k % 3)]; };
+  std::vector<Ring> rings(welded.size());
   for (std::size_t t = 0; t < opaque.count(); ++t)
-    for (int k = 0; k < 3; ++k) rings.add(corner(t, k), corner(t, k + 1), corner(t, k + 2));
-  std::vector<bool> interior(opaque.count()), is_near(hashes.size()), is_mixed(hashes.size());
+    for (int k = 0; k < 3; ++k) rings[corner(t, k)].add(corner(t, k + 1), corner(t, k + 2));
+  std::vector<bool> interior(opaque.count()), is_near(welded.size()), is_mixed(welded.size());
   bool any = false;
   for (std::size_t t = 0; t < opaque.count(); ++t) {
     int closed = 0;
-    for (int k = 0; k < 3; ++k) closed += rings.is_closed(corner(t, k)) ? 1 : 0;
+    for (int k = 0; k < 3; ++k) closed += rings[corner(t, k)].is_closed() ? 1 : 0;
     // Smaller than a step: of such triangles all corners seem to be closed.
     const bool is_small = corner(t, 0) == corner(t, 1) || corner(t, 1) == corner(t, 2) ||
                           corner(t, 2) == corner(t, 0);
@@ -209,19 +156,19 @@ std::vector<float> interior_triangles(const OpaqueTriangles& opaque) {
     any |= interior[t];
     for (int k = 0; closed > 0 && k < 3; ++k) {
       is_near[opaque.vertex(t, k)] = true;
-      is_mixed[opaque.vertex(t, k)] =
-          rings.is_closed(corner(t, k)) && !rings.faces_one_side(corner(t, k));
+      const Ring& ring = rings[corner(t, k)];
+      is_mixed[opaque.vertex(t, k)] = ring.is_closed() && !ring.faces_one_side();
     }
   }
   if (!any) return {};
-  rings.reset_to_vertices();
+  rings = {};
   return opaque.in_mesh(chords_of(
       opaque, interior, is_mixed,
       [&](std::size_t t) {
         return is_near[opaque.vertex(t, 0)] || is_near[opaque.vertex(t, 1)] ||
                is_near[opaque.vertex(t, 2)];
       },
-      [&](std::size_t t, int k) { return rings.first_vertex(corner(t, k), opaque.vertex(t, k)); }));
+      corner));
 }
 
 void WallAreas::add(const V3f& area, float opacity, float chord) {

@@ -8,6 +8,8 @@
 #include <numbers>
 
 #include "bvh/build/object_bvh.hpp"
+#include "bvh/opacity/welded_vertices.hpp"
+#include "support/scenes/split_vertices.hpp"
 #include "support/scenes/uniform_map.hpp"
 
 namespace dapple {
@@ -60,22 +62,53 @@ NodeOpacity opacity_of(const Scene& scene) {
   return built.object.opacity;
 }
 
+std::vector<bool> closed_of(const Mesh& mesh, float opacity = 1.0f) {
+  const std::vector<float> opacities(mesh.primitive_count(), opacity);
+  const OpaqueTriangles opaque(mesh, opacities);
+  return closed_triangles(opaque, welded_vertices(opaque.positions()));
+}
+
 TEST(ClosedSurface, APrismIsClosedEvenWithOpenEndsACardIsNot) {
   Mesh mesh;
   add_prism(mesh, {0, 0, 0}, {0.3f, 1, 0.2f}, 0.02f, 6, 4);
   const std::size_t prism = mesh.primitive_count();
   add_card(mesh, {1, 0, 0}, {0.1f, 0, 0}, {0, 0.1f, 0.05f});
-  const std::vector<float> opacities(mesh.primitive_count(), 1.0f);
-  const std::vector<bool> closed = closed_triangles({mesh, opacities});
+  const std::vector<bool> closed = closed_of(mesh);
   ASSERT_EQ(closed.size(), mesh.primitive_count());
   for (std::size_t t = 0; t < closed.size(); ++t) EXPECT_EQ(closed[t], t < prism) << t;
+}
+
+TEST(ClosedSurface, SplitVerticesDoNotOpenASurface) {
+  Mesh mesh;
+  add_prism(mesh, {0, 0, 0}, {0.3f, 1, 0.2f}, 0.02f, 6, 4);
+  const std::size_t prism = mesh.primitive_count();
+  add_card(mesh, {1, 0, 0}, {0.1f, 0, 0}, {0, 0.1f, 0.05f});
+  // A thousand leaves that touch at one point; eleven of them share an edge, too.
+  for (int i = 0; i < 1000; ++i) {
+    const float a = 0.7f * static_cast<float>(i), b = 0.31f * static_cast<float>(i * i % 97);
+    add_card(mesh, {2, 0, 0}, {std::cos(a), std::sin(a), 0},
+             {std::sin(a) * std::sin(b), -std::cos(a) * std::sin(b), std::cos(b)});
+  }
+  const Mesh split = test::with_split_vertices(mesh);
+  const std::vector<bool> closed = closed_of(split);
+  ASSERT_EQ(closed.size(), split.primitive_count());
+  for (std::size_t t = 0; t < closed.size(); ++t) EXPECT_EQ(closed[t], t < prism) << t;
+  const V3f whole = opacity_of(scene_of(mesh)).axes, parts = opacity_of(scene_of(split)).axes;
+  for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(parts[axis], whole[axis], 1e-6f) << axis;
+}
+
+TEST(ClosedSurface, BothSidesOfASheetAreClosed) {
+  Mesh mesh;
+  add_card(mesh, {0, 0, 0}, {0.1f, 0, 0}, {0, 0.1f, 0.05f});
+  add_card(mesh, {0, 0, 0}, {0, 0.1f, 0.05f}, {0.1f, 0, 0});
+  EXPECT_EQ(closed_of(mesh), std::vector<bool>(4, true));
 }
 
 TEST(ClosedSurface, TransparentSurfacesAreNotClosed) {
   Mesh mesh;
   add_prism(mesh, {0, 0, 0}, {0, 1, 0}, 0.02f, 6, 4);
-  EXPECT_TRUE(closed_triangles({mesh, std::vector<float>(mesh.primitive_count(), 0.9f)}).empty());
-  EXPECT_TRUE(closed_triangles({mesh, std::vector<float>(mesh.primitive_count(), -1.0f)}).empty());
+  EXPECT_TRUE(closed_of(mesh, 0.9f).empty());
+  EXPECT_TRUE(closed_of(mesh, -1.0f).empty());
 }
 
 TEST(ClosedSurface, AThinTwigOccludesItsSilhouetteOnce) {

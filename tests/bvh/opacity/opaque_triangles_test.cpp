@@ -5,6 +5,7 @@
 
 #include "bvh/opacity/closed_surface.hpp"
 #include "bvh/opacity/wall.hpp"
+#include "bvh/opacity/welded_vertices.hpp"
 #include "support/scenes/smooth_shapes.hpp"
 
 namespace dapple {
@@ -57,8 +58,9 @@ TEST(OpaqueTriangles, AreTheMeshItselfIfAllAreOpaque) {
 TEST(OpaqueTriangles, SurfacesAmongOthersAreFound) {
   const MixedMesh mixed;
   const OpaqueTriangles opaque(mixed.mesh, mixed.opacities);
-  const std::vector<bool> closed = closed_triangles(opaque);
-  const std::vector<float> interior = interior_triangles(opaque);
+  const std::vector<std::uint32_t> welded = welded_vertices(opaque.positions());
+  const std::vector<bool> closed = closed_triangles(opaque, welded);
+  const std::vector<float> interior = interior_triangles(opaque, welded);
   ASSERT_EQ(closed.size(), mixed.opacities.size());
   ASSERT_EQ(interior.size(), mixed.opacities.size());
   for (std::size_t t = 0; t < closed.size(); ++t) {

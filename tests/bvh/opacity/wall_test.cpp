@@ -7,29 +7,26 @@
 #include <algorithm>
 #include <utility>
 
+#include "bvh/opacity/welded_vertices.hpp"
 #include "dapple/bvh.hpp"
 #include "support/scenes/scene_on_device.hpp"
 #include "support/scenes/smooth_shapes.hpp"
+#include "support/scenes/split_vertices.hpp"
 
 namespace dapple {
 namespace {
 
 using namespace scene_test;
 
-std::ptrdiff_t count_interior(const Mesh& mesh, float opacity = 1.0f) {
-  const std::vector<float> opacities(mesh.indices.size() / 3, opacity);
-  const std::vector<float> chords = interior_triangles({mesh, opacities});
-  return std::count_if(chords.begin(), chords.end(), [](float chord) { return chord > 0; });
+std::vector<float> chords_of(const Mesh& mesh, const std::vector<float>& opacities) {
+  const OpaqueTriangles opaque(mesh, opacities);
+  return interior_triangles(opaque, welded_vertices(opaque.positions()));
 }
 
-/// A mesh in which each triangle has three vertices of its own, as exporters of hard edges write.
-Mesh with_split_vertices(const Mesh& mesh) {
-  Mesh split;
-  for (const std::uint32_t index : mesh.indices) {
-    split.indices.push_back(static_cast<std::uint32_t>(split.positions.size()));
-    split.positions.push_back(mesh.positions[index]);
-  }
-  return split;
+std::ptrdiff_t count_interior(const Mesh& mesh, float opacity = 1.0f) {
+  const std::vector<float> opacities(mesh.indices.size() / 3, opacity);
+  const std::vector<float> chords = chords_of(mesh, opacities);
+  return std::count_if(chords.begin(), chords.end(), [](float chord) { return chord > 0; });
 }
 
 TEST(InteriorTriangles, AreAllOfAClosedSurface) {
@@ -38,7 +35,7 @@ TEST(InteriorTriangles, AreAllOfAClosedSurface) {
 }
 
 TEST(InteriorTriangles, AreFoundByPositionsNotIndices) {
-  const Mesh sphere = with_split_vertices(test::smooth_sphere());
+  const Mesh sphere = test::with_split_vertices(test::smooth_sphere());
   EXPECT_EQ(count_interior(sphere), static_cast<std::ptrdiff_t>(sphere.indices.size() / 3));
 }
 
@@ -57,7 +54,7 @@ TEST(InteriorTriangles, ReachTheBorderOfALargeSheet) {
   EXPECT_EQ(count_interior(sheets), 2 * 8 * 8 + 2 * 2 * 2) << "a small sheet beside it";
   // Two triangles have all their corners on the border: they are found by their neighbours'
   // vertices.
-  EXPECT_EQ(count_interior(with_split_vertices(sheets)), 2 * 8 * 8 - 2 + 2 * 2 * 2);
+  EXPECT_EQ(count_interior(test::with_split_vertices(sheets)), 2 * 8 * 8 - 2 + 2 * 2 * 2);
 }
 
 TEST(InteriorTriangles, AreNoneOfLeavesAndOfTranslucentSurfaces) {
@@ -72,7 +69,7 @@ TEST(InteriorTriangles, AreNoneOfLeavesAndOfTranslucentSurfaces) {
 /// The chord of all interior triangles, which must be one surface.
 float chord_of(const Mesh& mesh) {
   const std::vector<float> ones(mesh.indices.size() / 3, 1.0f);
-  const std::vector<float> chords = interior_triangles({mesh, ones});
+  const std::vector<float> chords = chords_of(mesh, ones);
   EXPECT_EQ(std::count(chords.begin(), chords.end(), chords[0]), std::ssize(chords));
   return chords[0];
 }
