@@ -20,6 +20,7 @@
 #include "bake/texture/texture_bake.hpp"
 #include "bake/texture/texture_layout.hpp"
 #include "bake/texture/texture_memory.hpp"
+#include "bake/two_sided.hpp"
 #include "bake/vertex_bake.hpp"
 #include "dapple/error.hpp"
 #include "film/film_memory.hpp"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "bake/two_sided.hpp"
 #include "bake/vertex_bake.hpp"
 #include "sampling/random_choice.hpp"
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "bake/two_sided.hpp"
 #include "bake/vertex_bake.hpp"
 #include "sampling/random_choice.hpp"
 #include "scene/check/invertible.hpp"

@@ -110,13 +110,6 @@ std::size_t add_errors(const VertexGroups& groups, const ValueSums& sums, double
 
 }  // namespace
 
-std::vector<bool> two_sided_triangles(const Scene& scene, const Mesh& mesh, BakeSides sides) {
-  std::vector<bool> two_sided(mesh.primitive_count());
-  for (std::size_t t = 0; t < two_sided.size(); ++t)
-    two_sided[t] = is_two_sided(scene.materials[mesh.materials[t]], sides);
-  return two_sided;
-}
-
 SmallParts small_parts(const Mesh& mesh, const VertexGroups& groups) {
   SmallParts parts{connected_parts(mesh, groups), 0};
   std::vector<std::uint32_t> size(groups.count), number(groups.count, SmallParts::kLarge);

@@ -10,9 +10,6 @@
 
 namespace dapple {
 
-/// Whether the values of each triangle of a mesh describe both sides.
-std::vector<bool> two_sided_triangles(const Scene& scene, const Mesh& mesh, BakeSides sides);
-
 /// The small parts that the vertex groups of a mesh belong to.
 SmallParts small_parts(const Mesh& mesh, const VertexGroups& groups);
 

@@ -143,8 +143,14 @@ std::vector<ColumnType> read_types(const std::string& path, std::string_view des
   const bool structured = descr.starts_with('[');
   do {
     if (structured) {
+      if (const std::size_t next = descr.find_first_of("'\"]");
+          !types.empty() && (next == std::string_view::npos || descr[next] == ']'))
+        return types;
       const std::string_view name = take_quoted(descr, ']');
-      if (name.empty() && !types.empty()) return types;
+      if (name.empty())
+        fail_npy(path,
+                 "has padding between its fields; NumPy removes it: "
+                 "numpy.lib.recfunctions.repack_fields(points)");
       names.emplace_back(name);
     }
     const std::string_view text = take_quoted(descr, ']');

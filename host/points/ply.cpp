@@ -101,11 +101,13 @@ Header read_header(const std::string& path, const std::string& bytes, NumberTabl
   Header header;
   std::istringstream lines(bytes.substr(0, end));
   std::string line, element;
+  bool has_format = false;
   while (std::getline(lines, line)) {
     std::istringstream words(line);
     std::string word, type, name;
     words >> word >> type >> name;
     if (word == "format") {
+      has_format = true;
       header.ascii = type == "ascii";
       if (!header.ascii && type != "binary_little_endian")
         fail_ply(path, "is " + type + "; it must be ascii or binary_little_endian");
@@ -121,9 +123,45 @@ Header read_header(const std::string& path, const std::string& bytes, NumberTabl
       table.names.push_back(name);
     }
   }
+  if (!has_format)
+    fail_ply(path,
+             "has no line format, such as 'format ascii 1.0' or 'format "
+             "binary_little_endian 1.0'");
   header.end = bytes.find('\n', end) + 1;
   table.columns = table.names.size();
   return header;
+}
+
+/// The next line that is not empty, without its end.
+std::string_view take_line(std::string_view& rest) {
+  std::string_view line;
+  while (line.empty() && !rest.empty()) {
+    line = rest.substr(0, rest.find('\n'));
+    rest.remove_prefix(std::min(rest.size(), line.size() + 1));
+    line = line.substr(0, line.find_last_not_of(" \t\r") + 1);
+  }
+  return line;
+}
+
+/// Reads a vertex, which has a line of its own.
+void read_line(const std::string& path, std::size_t row, std::string_view line,
+               NumberTable& table) {
+  const char *at = line.data(), *const end = line.data() + line.size();
+  const auto is_space = [&] { return at < end && (*at == ' ' || *at == '\t'); };
+  for (std::size_t column = 0; column < table.columns; ++column) {
+    while (is_space()) ++at;
+    if (at < end && *at == '+') ++at;
+    double value = 0;
+    const auto [next, error] = std::from_chars(at, end, value);
+    at = next;
+    if (error != std::errc() || (at < end && !is_space()))
+      fail_ply(path, fmt::format("vertex {}: its line must have {} numbers, one is missing or "
+                                 "not a number",
+                                 row, table.columns));
+    table.values.push_back(value);
+  }
+  if (at != end)
+    fail_ply(path, fmt::format("vertex {}: its line has more than {} numbers", row, table.columns));
 }
 
 }  // namespace
@@ -134,16 +172,9 @@ NumberTable read_ply(const std::string& path) {
   NumberTable table;
   const Header header = read_header(path, bytes, table);
   if (header.ascii) {
-    const char *at = bytes.data() + header.end, *end = bytes.data() + bytes.size();
-    for (std::size_t i = 0; i < header.rows * table.columns; ++i) {
-      while (at < end && (*at == ' ' || *at == '\n' || *at == '\r' || *at == '\t')) ++at;
-      double value = 0;
-      const auto [next, error] = std::from_chars(at, end, value);
-      if (error != std::errc())
-        fail_ply(path, fmt::format("vertex {} has no number where one must be", i / table.columns));
-      table.values.push_back(value);
-      at = next;
-    }
+    std::string_view rest = std::string_view(bytes).substr(header.end);
+    for (std::size_t row = 0; row < header.rows; ++row)
+      read_line(path, row, take_line(rest), table);
     return table;
   }
   if (header.row_bytes == 0 || header.rows > (bytes.size() - header.end) / header.row_bytes)

@@ -19,7 +19,7 @@ namespace dapple {
 
 /// The side of a surface that a value describes.
 enum class BakeSides : std::uint8_t {
-  automatic,  ///< max for double-sided materials, front for others
+  automatic,  ///< max for small double-sided sheets, such as leaves, front for others
   front,      ///< the side from which the triangle's vertices are counterclockwise
   max,        ///< the side with the larger AO, chosen for a small sheet as a whole, else by vertex
   mean,       ///< the mean of both

@@ -336,6 +336,8 @@ class Scene:
         chosen = _options.apply("measure", _native.PointOptions(), options, arguments)
         if periodic is not None:
             chosen.period_x, chosen.period_z = _arguments.several("periodic", periodic, 2)
+            if chosen.period_x == 0 or chosen.period_z == 0:  # as float32; 0 would be no period
+                raise UsageError(f"periodic is {periodic}; it must be two periods above 0, metres")
         progress = _arguments.progress_function(progress)
         columns, bias, footprint, notes = _native.measure(
             self._native, at, facing, chosen, towards, across, progress

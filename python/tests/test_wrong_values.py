@@ -42,6 +42,8 @@ WRONG: dict[str, Call] = {
     "periodic has the shape (1,)": lambda s: s.measure(AT, periodic=(1,)),  # type: ignore[arg-type]
     "periodic is 'ab'": lambda s: s.measure(AT, periodic="ab"),  # type: ignore[arg-type]
     "periodic is not finite": lambda s: s.measure(AT, periodic=(NAN, 1)),
+    "periodic is (0, 0); it must be two": lambda s: s.measure(AT, periodic=(0, 0)),
+    "periodic is (2, 1e-50); it must be two": lambda s: s.measure(AT, periodic=(2, 1e-50)),
     "--periodic is -1": lambda s: s.measure(AT, periodic=(-1, 1)),
     "value is 'x'": lambda s: s.set_opacity("0", "x"),  # type: ignore[arg-type]
     "outside [0, 1]": lambda s: s.set_opacity("0", NAN),

@@ -44,6 +44,25 @@ BakeOptions many_rays() {
   return options;
 }
 
+// Many programs write all materials as double-sided: a ground still has the AO of its upper side,
+// also if it is a single quad, and a leaf that of its better lit one.
+TEST(Bake, GroundsHaveTheirFrontAlthoughTheirMaterialIsDoubleSided) {
+  for (const std::uint32_t cells : {1u, 40u}) {
+    Scene scene;
+    scene.materials = {opaque(true)};
+    scene.meshes = {grid(4, 0, cells), grid(4, 0.01f, cells), grid(0.1f, 0.02f, 1)};
+    for (std::uint32_t m = 0; m < 3; ++m) scene.instances.push_back({m, M44f()});
+    BakeOptions options = many_rays();
+    options.rays = 256;
+    const BakeResult front = bake(scene, options);
+    for (const float ao : front.meshes.at(0).ao) EXPECT_LT(ao, 0.6f) << cells;
+    for (const float ao : front.meshes.at(2).ao) EXPECT_GT(ao, 0.99f);
+    options.sides = BakeSides::max;
+    const BakeResult brighter = bake(scene, options);
+    for (const float ao : brighter.meshes.at(0).ao) EXPECT_GT(ao, 0.99f) << cells;
+  }
+}
+
 TEST(Bake, APlaneUnderADiskHasTheClosedFormOnItsAxis) {
   // Below the middle of a disk of radius 2 at height 1 and opacity 0.85: 1 - 0.85 r^2 / (r^2 +
   // h^2).

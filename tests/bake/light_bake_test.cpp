@@ -74,7 +74,9 @@ TEST(BakeLight, ASunAboveLightsAPlaneButNotUnderALeafAndFromOneSideOnly) {
     Scene floor = scene_of(plane(8, 16), double_sided);
     for (std::size_t t = 0; t < floor.meshes[0].primitive_count() && double_sided; ++t)
       std::swap(floor.meshes[0].indices[3 * t], floor.meshes[0].indices[3 * t + 1]);  // upside down
-    const BakeResult result = bake(floor, lit_by({noon()}), {}, {leaf_above()});
+    BakeOptions options = lit_by({noon()});
+    if (double_sided) options.sides = BakeSides::max;  // a floor has its front, which is below
+    const BakeResult result = bake(floor, options, {}, {leaf_above()});
     ASSERT_EQ(result.light_names, std::vector<std::string>{"noon"});
     const std::vector<V3f>& light = result.meshes.at(0).light.at(0);
     for (std::size_t v = 0; v < light.size(); ++v)

@@ -51,6 +51,18 @@ MUTATIONS = [
         "  if (false) {\n",
         r"^Renderer\."),
     Mutation(
+        "edges-of-many-leaves-join-them", "host/bvh/opacity/closed_surface.cpp",
+        "if (entry.triangles == 2)", "if (entry.triangles >= 2)",
+        r"^ClosedSurface\."),
+    Mutation(
+        "split-vertices-open-surfaces", "host/bvh/opacity/closed_surface.cpp",
+        "if (entry.triangles == 2)", "if (entry.triangles == 1)",
+        r"^ClosedSurface\."),
+    Mutation(
+        "rings-forget-the-last-corner", "host/bvh/opacity/wall.cpp",
+        "ring ^= hash_of(next) ^ hash_of(last);", "ring ^= hash_of(next);",
+        r"^(InteriorTriangles|Wall)\."),
+    Mutation(
         "nothing-is-a-wall", "host/bvh/opacity/wall.cpp",
         "  if (!(areas.interior > kInteriorShare * areas.all)) return false;\n",
         "  if (!(areas.interior < 0.0f)) return false;\n",

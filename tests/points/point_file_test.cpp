@@ -212,6 +212,33 @@ std::string bytes_of_all(T... values) {
   return bytes;
 }
 
+TEST_F(PointFile, VerticesOfAsciiPlyHaveLinesOfTheirOwn) {
+  const auto ply = [](const std::string& rows) {
+    return "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty "
+           "float z\nend_header\n" +
+           rows;
+  };
+  const PointList list = read_points(write("a.ply", ply("\n 0 +0.5\t1 \r\n\n2 3 4")));
+  ASSERT_EQ(list.points.size(), 2u);
+  EXPECT_EQ(list.points[0], V3f(0, 0.5f, 1));
+  EXPECT_EQ(list.points[1], V3f(2, 3, 4));
+  expect_error(write("b.ply", ply("0 1 2 255\n3 4 5\n")), "vertex 0: its line has more than 3");
+  expect_error(write("c.ply", ply("0 1 2\n3 4\n5 6\n")), "vertex 1: its line must have 3");
+  expect_error(write("d.ply", ply("0 0.5.1\n3 4 5\n")), "vertex 0: its line must have 3");
+  expect_error(write("e.ply", ply("0 1 2\n")), "vertex 1: its line must have 3");
+  expect_error(write("f.ply",
+                     "ply\nelement vertex 1\nproperty float x\nproperty float y\nproperty "
+                     "float z\nend_header\n0 1 2\n"),
+               "no line format");
+}
+
+TEST_F(PointFile, PaddedFieldsOfNpyAreAnError) {
+  const std::string row = bytes_of_all(1.0f, 2.0f, 3.0f, 0u);
+  for (const char* descr : {"[('x', '<f4'), ('y', '<f4'), ('z', '<f4'), ('', '|V4')]",
+                            "[('x', '<f4'), ('', '|V4'), ('y', '<f4'), ('z', '<f4')]"})
+    expect_error(write("padded.npy", npy(descr, "(1,)", row)), "has padding between its fields");
+}
+
 TEST_F(PointFile, LinesMayEndAsOnOldMacs) {
   const PointList list = read_points(write("mac.csv", "x,y,z\r0,0,0\r1,2,3\r"));
   ASSERT_EQ(list.points.size(), 2u);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "bake/two_sided.hpp"
 #include "bake/vertex_bake.hpp"
 
 namespace dapple::bench {

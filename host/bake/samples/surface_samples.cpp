@@ -26,11 +26,6 @@ SampleCounts sample_counts(int rays, std::size_t placements, bool at_vertex) {
   return {samples, rays / samples};
 }
 
-bool is_two_sided(const Material& material, BakeSides sides) {
-  if (sides == BakeSides::automatic) return material.double_sided;
-  return sides != BakeSides::front;
-}
-
 // Each base-4 digit chooses a quarter of the triangle: the one in the middle, which is turned
 // round, or the one at a corner.
 std::array<float, 3> triangle_point(std::uint32_t index) {

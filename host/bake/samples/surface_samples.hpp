@@ -46,9 +46,6 @@ inline constexpr int kPointsOfPlacement = 16;
 /// which tell the error. Placements have equally many samples if there are enough.
 SampleCounts sample_counts(int rays, std::size_t placements, bool at_vertex = false);
 
-/// Whether values of a triangle with this material describe both sides.
-bool is_two_sided(const Material& material, BakeSides sides);
-
 /// The largest coordinates of a triangle's corners, without their signs.
 V3f reach_of(const Mesh& mesh, std::size_t triangle);
 

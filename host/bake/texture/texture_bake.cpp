@@ -7,6 +7,7 @@
 #include "bake/texture/seams.hpp"
 #include "bake/texture/texel_cover.hpp"
 #include "bake/texture/uv_overlap.hpp"
+#include "bake/two_sided.hpp"
 #include "bake/vertex_bake.hpp"
 #include "sampling/random_choice.hpp"
 

@@ -252,14 +252,15 @@ void build_triangles(const Mesh& mesh, const std::vector<float>& opacities,
   fill_boxes(mesh, opacities, boxes, [&](std::uint32_t t) { return triangle_box(mesh, t); });
   std::vector<bool> closed;
   std::vector<float> interior;
-  tbb::parallel_invoke(
-      [&] { built.tree = build_wide_tree(boxes, kLeafSize); },
-      [&] {
-        const OpaqueTriangles opaque(mesh, opacities);
-        const std::vector<std::uint32_t> welded = welded_vertices(opaque.positions());
-        tbb::parallel_invoke([&] { closed = closed_triangles(opaque, welded); },
+  tbb::parallel_invoke([&] { built.tree = build_wide_tree(boxes, kLeafSize); },
+                       [&] {
+                         const OpaqueTriangles opaque(mesh, opacities);
+                         const std::vector<std::uint32_t> welded =
+                             welded_vertices(opaque.positions(), opaque.indices());
+                         tbb::parallel_invoke(
+                             [&] { closed = closed_triangles(opaque, welded); },
                              [&] { interior = interior_triangles(opaque, welded); });
-      });
+                       });
   BlockLayout layout;
   tbb::parallel_invoke(
       [&] {

@@ -22,6 +22,8 @@ class OpaqueTriangles {
 
   [[nodiscard]] std::size_t count() const { return indices_.size() / 3; }
   [[nodiscard]] std::span<const V3f> positions() const { return positions_; }
+  /// Three vertices for each triangle.
+  [[nodiscard]] std::span<const std::uint32_t> indices() const { return indices_; }
   /// The vertex of corner `k` of a triangle, below positions().size().
   [[nodiscard]] std::uint32_t vertex(std::size_t triangle, int k) const {
     return indices_[3 * triangle + static_cast<std::size_t>(k)];

@@ -18,6 +18,12 @@ constexpr float kInteriorShare = 0.5f;
 /// Minimum share of the area of triangles whose neighbours face both sides in a surface that does.
 /// The corners of a room of which each wall faces as it likes are such a share.
 constexpr float kMixedShare = 0.002f;
+/// Below this share of the sum of its triangles' absolute values the volume of a surface says
+/// nothing: each triangle is there twice, facing both sides.
+constexpr double kCancelled = 1e-6;
+/// Minimum share of a node's box, seen along a wall's normal, that makes the node a wall whatever
+/// else is in it, such as ivy (experiment 254).
+constexpr float kCovering = 0.05f;
 /// Minimum length of the sum of area vectors, relative to the area. Half a sphere has 1/2, a third
 /// of a tube 0.83, the walls of a room but one 0.2.
 constexpr float kOneSided = 0.5f;
@@ -60,6 +66,7 @@ struct SurfaceSums {
   V3d vector{0, 0, 0};            ///< of area vectors
   double area = 0, interior = 0;  ///< of all triangles, and of those inside the surface
   double product = 0;             ///< of area vectors and positions: three volumes
+  double magnitude = 0;           ///< the same of triangles' absolute values
   double mixed = 0;               ///< area of triangles whose neighbours may face the other side
   double cones = 0;               ///< three times the volume between all triangles and the centre
 
@@ -72,14 +79,18 @@ struct SurfaceSums {
     area += size;
     if (is_interior) interior += size;
     if (is_mixed) mixed += size;
-    product += area_vector.dot(corner - origin);
+    const double of_triangle = area_vector.dot(corner - origin);
+    product += of_triangle;
+    magnitude += std::fabs(of_triangle);
   }
   /// For surfaces whose triangles face both sides, once all triangles are added.
   void add_cone(const V3d& corner, const V3d& area_vector) {
     cones += std::fabs(area_vector.dot(corner - origin - centre / area));
   }
   /// Whether product says nothing of the volume.
-  [[nodiscard]] bool faces_both_sides() const { return mixed > double{kMixedShare} * area; }
+  [[nodiscard]] bool faces_both_sides() const {
+    return mixed > double{kMixedShare} * area || std::fabs(product) < kCancelled * magnitude;
+  }
   /// Seen from its centre, so that of an open surface, too, it does not depend on the origin. Where
   /// triangles face both sides it is right if all of the surface can be seen from there.
   [[nodiscard]] double volume() const {
@@ -188,8 +199,13 @@ void WallAreas::add(const WallAreas& areas) {
 }
 
 bool is_wall(const WallAreas& areas, const NormalMoments& normals, const Box3f& box) {
-  if (!(areas.interior > kInteriorShare * areas.all)) return false;
   const V3f sides = box.max - box.min;
+  const V3f& v = areas.vector;
+  const float projection =
+      std::fabs(v.x) * sides.y * sides.z + std::fabs(v.y) * sides.z * sides.x +
+      std::fabs(v.z) * sides.x * sides.y;  // of the box along the vector, times its length
+  if (v.length2() > kCovering * projection) return areas.interior > 0;
+  if (!(areas.interior > kInteriorShare * areas.all)) return false;
   const float extent = std::max({sides.x, sides.y, sides.z});
   if (extent * areas.interior < kSmallInside * areas.chords) return true;
   if (areas.vector.length() > kOneSided * areas.interior) return true;

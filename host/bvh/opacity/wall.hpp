@@ -35,9 +35,10 @@ struct WallAreas {
   void add(const WallAreas& areas);
 };
 
-/// Whether most of the node is a continuing opaque surface of which it holds one side (as a wall,
-/// or a part of a trunk), or which is flat (as a thick wall with both sides), or which encloses
-/// more than the node (as a cave, of which it holds a pillar). A whole twig is none of these: light
+/// Whether a continuing opaque surface covers a part of the node as seen along its normal (as a
+/// wall with ivy), or most of the node is such a surface of which it holds one side (as a wall, or
+/// a part of a trunk), or which is flat (as a thick wall with both sides), or which encloses more
+/// than the node (as a cave, of which it holds a pillar). A whole twig is none of these: light
 /// passes beside it. `box`: of the node.
 bool is_wall(const WallAreas& areas, const NormalMoments& normals, const Box3f& box);
 

@@ -107,7 +107,7 @@ void add_ray_options(CLI::App& app, BakeArguments& a) {
   app.add_option(
          "--sides", a.sides,
          "Side of a surface whose AO is stored. front; max: the brighter side; mean: the mean "
-         "of both; auto: max for double-sided materials, front for others")
+         "of both; auto: max for small sheets of double-sided materials, front for others")
       ->capture_default_str();
   app.add_option(
          "--instances", a.instances,

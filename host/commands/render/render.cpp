@@ -185,6 +185,9 @@ void keep_choices(const RenderResult& result, bool has_dome, bool writes_png,
   // A dome is the sky, whether the frame shows light or not.
   if ((is_lit || has_dome) && !options.ambient)
     options.ambient = static_cast<float>(result.statistics.ambient);
+  const std::vector<float>& alpha = result.film.find("A")->pixels;
+  if (std::none_of(alpha.begin(), alpha.end(), [](float value) { return value > 0; })) return;
+  // A frame that shows nothing has no bias to choose a footprint by.
   options.footprint = result.statistics.footprint;
   options.keep_footprint = true;
 }

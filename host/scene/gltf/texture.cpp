@@ -1,6 +1,7 @@
 // Finds, reads and shares images: see texture.hpp.
 #include "scene/gltf/texture.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "dapple/error.hpp"
@@ -92,6 +93,11 @@ int TextureReader::alpha_texture(int texture, const std::string& user) {
   AlphaImage decoded = with_colors_ ? alpha_of(this->decoded(image, what))
                                     : decode_alpha(read_image(document_, image, what).bytes, what);
   count_texels(decoded.alpha.size(), what);
+  if (std::all_of(decoded.alpha.begin(), decoded.alpha.end(),
+                  [](std::uint8_t alpha) { return alpha == 255; })) {
+    loaded_.emplace(key, -1);
+    return -1;
+  }
   result.name = one_line(image_name(document_, image));
   result.width = decoded.width;
   result.height = decoded.height;

@@ -19,8 +19,9 @@ class TextureReader {
   TextureReader(const Document& document, bool with_colors, Scene& scene)
       : document_(document), scene_(scene), with_colors_(with_colors) {}
 
-  /// Returns the index in Scene::textures of a glTF texture's alpha. Throws Error input, naming
-  /// `user`, when the image is missing, corrupt or in a format that dapple cannot read.
+  /// Returns the index in Scene::textures of a glTF texture's alpha; -1 if all of it is opaque, so
+  /// that walls are found to be opaque. Throws Error input, naming `user`, when the image is
+  /// missing, corrupt or in a format that dapple cannot read.
   int alpha_texture(int texture, const std::string& user);
 
   /// Returns the index in Scene::color_textures of a glTF texture. Throws like alpha_texture().

@@ -73,7 +73,7 @@ int attribute(const tinygltf::Primitive& primitive, const std::string& name) {
 Attributes read_attributes(const Document& document, const tinygltf::Primitive& primitive,
                            const AttributeNeeds& needs, const AlphaLookup& lookup,
                            const std::string& who) {
-  Attributes attributes{read_positions(document, primitive, who), {}, {}, {}, {}};
+  Attributes attributes{read_positions(document, primitive, who), {}, {}, {}, {}, needs.uvs};
   if (needs.normals) attributes.normals = read_normals(document, primitive, who);
   if (needs.uvs) attributes.uvs = read_uvs(document, primitive, lookup, who);
   if (needs.alphas) attributes.alphas = read_colors(document, primitive, who, 4);
@@ -120,7 +120,7 @@ OddValues append_vertices(Mesh& mesh, const Attributes& attributes, const Vertex
           unit_or_zero(deformer.normal(attributes.normals->vec3(source(i)), source(i)));
     }
   }
-  if (attributes.uvs || !mesh.uvs.empty()) mesh.uvs.resize(base + count, V2f(0, 0));
+  if (attributes.needs_uvs || !mesh.uvs.empty()) mesh.uvs.resize(base + count, V2f(0, 0));
   if (attributes.uvs) {
     for (std::size_t i = 0; i < count; ++i) {
       const V2f uv = lookup.apply(attributes.uvs->vec2(source(i)));

@@ -22,6 +22,7 @@ struct Attributes {
   std::optional<AccessorReader> uvs;
   std::optional<AccessorReader> alphas;  ///< COLOR_0, if it has an alpha
   std::optional<AccessorReader> colors;  ///< COLOR_0
+  bool needs_uvs = false;                ///< vertices without have (0, 0)
 };
 
 /// Which optional attributes the material needs.

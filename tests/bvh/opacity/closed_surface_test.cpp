@@ -65,7 +65,7 @@ NodeOpacity opacity_of(const Scene& scene) {
 std::vector<bool> closed_of(const Mesh& mesh, float opacity = 1.0f) {
   const std::vector<float> opacities(mesh.primitive_count(), opacity);
   const OpaqueTriangles opaque(mesh, opacities);
-  return closed_triangles(opaque, welded_vertices(opaque.positions()));
+  return closed_triangles(opaque, welded_vertices(opaque.positions(), opaque.indices()));
 }
 
 TEST(ClosedSurface, APrismIsClosedEvenWithOpenEndsACardIsNot) {

@@ -1,7 +1,6 @@
 // The model of directional opacity: the opacity and optical depth of a box along any direction, and
 // the kernels' version of the model, which computes eight boxes at once (footprint.clh). Tests of
 // what nodes store are in quantize_opacity_test.cpp.
-#include "bvh/opacity/quantize_opacity.hpp"
 #include "dapple/shared/opacity.h"
 
 #include <gtest/gtest.h>
@@ -13,6 +12,7 @@
 
 #include "bvh/build/object_bvh.hpp"
 #include "bvh/build/quantize_boxes.hpp"
+#include "bvh/opacity/quantize_opacity.hpp"
 #include "support/random_direction.hpp"
 #include "support/test_kernel.hpp"
 

@@ -58,7 +58,7 @@ TEST(OpaqueTriangles, AreTheMeshItselfIfAllAreOpaque) {
 TEST(OpaqueTriangles, SurfacesAmongOthersAreFound) {
   const MixedMesh mixed;
   const OpaqueTriangles opaque(mixed.mesh, mixed.opacities);
-  const std::vector<std::uint32_t> welded = welded_vertices(opaque.positions());
+  const std::vector<std::uint32_t> welded = welded_vertices(opaque.positions(), opaque.indices());
   const std::vector<bool> closed = closed_triangles(opaque, welded);
   const std::vector<float> interior = interior_triangles(opaque, welded);
   ASSERT_EQ(closed.size(), mixed.opacities.size());

@@ -1,5 +1,7 @@
 // What nodes store of opacity: 8-bit codes of optical depths, and moments of the normals of the
 // occluding surfaces.
+#include "bvh/opacity/quantize_opacity.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,7 +9,6 @@
 
 #include "bvh/build/object_bvh.hpp"
 #include "bvh/build/quantize_boxes.hpp"
-#include "bvh/opacity/quantize_opacity.hpp"
 #include "dapple/shared/opacity.h"
 
 namespace dapple {

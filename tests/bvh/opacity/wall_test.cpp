@@ -20,7 +20,7 @@ using namespace scene_test;
 
 std::vector<float> chords_of(const Mesh& mesh, const std::vector<float>& opacities) {
   const OpaqueTriangles opaque(mesh, opacities);
-  return interior_triangles(opaque, welded_vertices(opaque.positions()));
+  return interior_triangles(opaque, welded_vertices(opaque.positions(), opaque.indices()));
 }
 
 std::ptrdiff_t count_interior(const Mesh& mesh, float opacity = 1.0f) {
@@ -55,6 +55,19 @@ TEST(InteriorTriangles, ReachTheBorderOfALargeSheet) {
   // Two triangles have all their corners on the border: they are found by their neighbours'
   // vertices.
   EXPECT_EQ(count_interior(test::with_split_vertices(sheets)), 2 * 8 * 8 - 2 + 2 * 2 * 2);
+}
+
+// Ivy has ten times the area of the wall that it grows on.
+TEST(Wall, IsCoveredByThePartOfAWallWhateverElseIsInIt) {
+  WallAreas areas;
+  NormalMoments normals;
+  areas.add(V3f(0, 0, 1), 1.0f, 2.0f);
+  for (int i = 0; i < 10; ++i) areas.add(V3f(0.5f, 0.7f, 0.5f), 1.0f, 0.0f);
+  for (int axis = 0; axis < 3; ++axis) normals.sum[static_cast<std::size_t>(axis)] = 1;
+  const Box3f box(V3f(0, 0, 0), V3f(1, 1, 0.1f));
+  EXPECT_TRUE(is_wall(areas, normals, box));
+  EXPECT_TRUE(is_wall(areas, normals, {box.min, V3f(1, 10, 0.1f)}));
+  EXPECT_FALSE(is_wall(areas, normals, {box.min, V3f(1, 30, 0.1f)})) << "it covers a thirtieth";
 }
 
 TEST(InteriorTriangles, AreNoneOfLeavesAndOfTranslucentSurfaces) {
@@ -94,6 +107,25 @@ TEST(InteriorTriangles, HaveTheMeanChordOfASphereWhoseTrianglesFaceBothSides) {
         std::swap(turned.indices[3 * t], turned.indices[3 * t + 1]);
     EXPECT_NEAR(chord_of(turned), 4.0 / 3, 0.005) << halves;
   }
+}
+
+// As of programs that write each triangle for both of its sides.
+TEST(InteriorTriangles, HaveTheMeanChordOfASphereWhoseTrianglesAreThereTwice) {
+  Mesh sphere = test::smooth_sphere(120, 60);
+  for (V3f& p : sphere.positions) p += V3f(3, -7, 2);
+  const std::vector<std::uint32_t> once = sphere.indices;
+  for (std::size_t i = 0; i < once.size(); i += 3)
+    sphere.indices.insert(sphere.indices.end(), {once[i], once[i + 2], once[i + 1]});
+  EXPECT_NEAR(chord_of(sphere), 4.0 / 3, 0.005);
+}
+
+// Its triangles are smaller than a step of the coarse grid over all surfaces.
+TEST(InteriorTriangles, AreFoundInASmallHouseOnALargeTerrain) {
+  Mesh mesh = test::smooth_sphere(120, 60);
+  const auto interior = static_cast<std::ptrdiff_t>(mesh.indices.size() / 3);
+  EXPECT_EQ(count_interior(mesh), interior);
+  append_grid(mesh, {-10000, -1, -10000}, {20000, 0, 0}, {0, 0, 20000}, 1, 0);
+  EXPECT_EQ(count_interior(mesh), interior);
 }
 
 // The diameter of its tube, however large the ring is.
@@ -153,8 +185,9 @@ TEST(Wall, IsSmallInsideWhatItsSurfacesEnclose) {
 TEST(Wall, HasMostlyInteriorTriangles) {
   Sums mixed;
   mixed.add({0, 0, 1});
+  mixed.add({0, 0, -1});
   EXPECT_TRUE(mixed.wall());
-  mixed.add({0, 0, 1.1f}, false);
+  mixed.add({0, 0, 2.1f}, false);
   EXPECT_FALSE(mixed.wall());
 }
 

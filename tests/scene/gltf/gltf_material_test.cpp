@@ -41,6 +41,29 @@ json blend_with_texture(int texture) {
           {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", texture}}}}}};
 }
 
+// Walls with such a texture are walls.
+TEST(GltfMaterial, AnOpaqueAlphaTextureIsNone) {
+  GltfBuilder builder = textured_triangle(blend_with_texture(0));
+  const int view = builder.add_view(png::with_alpha(2, 2, {255, 255, 255, 255}));
+  const int image = builder.add("images", {{"bufferView", view}, {"mimeType", "image/png"}});
+  builder.add("textures", {{"source", image}});
+  const Scene scene = builder.load();
+  EXPECT_EQ(scene.materials.at(0).alpha_texture, -1);
+  EXPECT_TRUE(scene.textures.empty());
+}
+
+// All have the texel at 0, 0, whether another primitive has texture coordinates or not.
+TEST(GltfMaterial, VerticesWithoutTextureCoordinatesHaveZeros) {
+  GltfBuilder builder;
+  const int position = builder.add_positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
+  builder.add_mesh({{"attributes", {{"POSITION", position}}}, {"material", 0}});
+  builder.add("materials", blend_with_texture(0));
+  add_image(builder);
+  const Scene scene = builder.load();
+  EXPECT_EQ(scene.materials.at(0).alpha_texture, 0);
+  EXPECT_EQ(scene.meshes.at(0).uvs, std::vector<V2f>(3, V2f(0, 0)));
+}
+
 TEST(GltfMaterial, ReadsModeFactorCutoffAndName) {
   const Scene scene =
       textured_triangle({{"name", "leaf"},
@@ -177,7 +200,7 @@ TEST(GltfMaterial, ImagesWithoutAnAlphaChannelAreOpaque) {
   const int view = builder.add_view(png::encode(2, 1, 8, 2, {1, 2, 3, 4, 5, 6}));
   builder.add("images", {{"bufferView", view}});
   builder.add("textures", {{"source", 0}});
-  EXPECT_EQ(builder.load().textures.at(0).alpha, (Bytes{255, 255}));
+  EXPECT_EQ(builder.load().materials.at(0).alpha_texture, -1);
 }
 
 TEST(GltfMaterial, SixteenBitAlphaKeepsItsHighByte) {
