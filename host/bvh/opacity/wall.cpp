@@ -204,7 +204,8 @@ bool is_wall(const WallAreas& areas, const NormalMoments& normals, const Box3f& 
   const float projection =
       std::fabs(v.x) * sides.y * sides.z + std::fabs(v.y) * sides.z * sides.x +
       std::fabs(v.z) * sides.x * sides.y;  // of the box along the vector, times its length
-  if (v.length2() > kCovering * projection) return areas.interior > 0;
+  if (v.length2() > kCovering * projection && v.length() > kOneSided * areas.interior)
+    return areas.interior > 0;
   if (!(areas.interior > kInteriorShare * areas.all)) return false;
   const float extent = std::max({sides.x, sides.y, sides.z});
   if (extent * areas.interior < kSmallInside * areas.chords) return true;
