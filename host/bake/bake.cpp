@@ -164,7 +164,11 @@ class MeshOccluders {
  public:
   /// `options`: those that are traced with. With meshes alone each one's bias is measured anew.
   MeshOccluders(const Scene& scene, const BakeOptions& options, const OccluderScene* together)
-      : scene_(scene), asked_(options), options_(options), together_(together) {}
+      : scene_(scene),
+        two_sided_(scene, options.sides),
+        asked_(options),
+        options_(options),
+        together_(together) {}
 
   /// Valid until the next call.
   BakeTracing tracing(std::uint32_t mesh, const BakeRecords& records) {
@@ -174,10 +178,10 @@ class MeshOccluders {
       add_alone(records.statistics);
       alone_.emplace(scene_of_mesh(scene_, mesh), options_, std::vector<Scene>{});
       add_preparation(*alone_, preparing.seconds(), records.statistics);
-      measure_bias(
-          *alone_,
-          {PilotMesh(scene_, mesh, options_, placements_of(scene_, mesh, BakeInstances::alone))},
-          options_, records.statistics);
+      measure_bias(*alone_,
+                   {PilotMesh(scene_.meshes[mesh], two_sided_, options_,
+                              placements_of(scene_, mesh, BakeInstances::alone))},
+                   options_, records.statistics);
     }
     compared_.emplace(options_);
     return tracing_against(together_ ? *together_ : *alone_, options_, *compared_, records);
@@ -193,6 +197,7 @@ class MeshOccluders {
 
  private:
   const Scene& scene_;
+  const TwoSided two_sided_;
   const BakeOptions asked_;
   BakeOptions options_;
   std::optional<ComparedOptions> compared_;
@@ -215,9 +220,10 @@ bool for_each_mesh(const Scene& scene, const BakeOptions& options, BakeOne bake_
 /// Those that for_each_mesh() visits, in their surroundings.
 std::vector<PilotMesh> pilot_meshes(const Scene& scene, BakeOptions options) {
   if (options.placement == BakeInstances::alone) options.placement = BakeInstances::together;
+  const TwoSided two_sided(scene, options.sides);
   std::vector<PilotMesh> meshes;
   for_each_mesh(scene, options, [&](std::uint32_t m, const Placements& placements) {
-    meshes.emplace_back(scene, m, options, placements);
+    meshes.emplace_back(scene.meshes[m], two_sided, options, placements);
     return true;
   });
   return meshes;
@@ -226,11 +232,11 @@ std::vector<PilotMesh> pilot_meshes(const Scene& scene, BakeOptions options) {
 bool bake_vertices(const Scene& scene, const BakeOptions& options, MeshOccluders& occluders,
                    const BakeRecords& records, BakeResult& result) {
   result.meshes.resize(scene.meshes.size());
+  const TwoSided two_sided(scene, options.sides);
   return for_each_mesh(scene, options, [&](std::uint32_t m, const Placements& placements) {
     BakeTracing tracing = occluders.tracing(m, records);
     const Mesh& mesh = scene.meshes[m];
-    auto baked = bake_mesh(mesh, two_sided_triangles(scene, mesh, options.sides), m, placements,
-                           options, tracing);
+    auto baked = bake_mesh(mesh, two_sided.triangles(mesh), m, placements, options, tracing);
     if (baked) result.meshes[m] = std::move(*baked);
     return baked.has_value();
   });

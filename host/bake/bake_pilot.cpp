@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "bake/two_sided.hpp"
 #include "bake/vertex_bake.hpp"
 #include "sampling/random_choice.hpp"
 
@@ -14,11 +13,11 @@ constexpr std::size_t kMostSamples = 1u << 17;
 
 }  // namespace
 
-PilotMesh::PilotMesh(const Scene& scene, std::uint32_t index, const BakeOptions& options,
+PilotMesh::PilotMesh(const Mesh& of, const TwoSided& sides, const BakeOptions& options,
                      Placements given)
-    : mesh(&scene.meshes[index]),
+    : mesh(&of),
       groups(one_group(mesh->positions.size())),
-      two_sided(two_sided_triangles(scene, *mesh, options.sides)),
+      two_sided(sides.triangles(of)),
       normals(options.normals),
       placements(std::move(given)) {}
 

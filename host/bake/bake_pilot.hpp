@@ -6,14 +6,15 @@
 #include <vector>
 
 #include "bake/bake_bias.hpp"
+#include "bake/two_sided.hpp"
 #include "sampling/footprint_choice.hpp"
 
 namespace dapple {
 
 /// A mesh whose values are baked.
 struct PilotMesh {
-  /// `options`: only which sides and normals its samples have.
-  PilotMesh(const Scene& scene, std::uint32_t index, const BakeOptions& options, Placements given);
+  /// `options`: only which normals its samples have.
+  PilotMesh(const Mesh& of, const TwoSided& sides, const BakeOptions& options, Placements given);
   const Mesh* mesh;
   VertexGroups groups;          ///< one for all vertices, since no value is made
   std::vector<bool> two_sided;  ///< by triangle

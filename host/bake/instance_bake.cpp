@@ -30,10 +30,11 @@ double radical_inverse(std::uint32_t index) {
 /// their surroundings alone. Strands have none.
 class PointsOfMesh {
  public:
-  PointsOfMesh(const Scene& scene, std::uint32_t index, const BakeOptions& options)
+  PointsOfMesh(const Scene& scene, std::uint32_t index, const TwoSided& two_sided,
+               const BakeOptions& options)
       : mesh_(scene.meshes[index]),
         normals_(options.normals),
-        two_sided_(two_sided_triangles(scene, mesh_, options.sides)),
+        two_sided_(two_sided.triangles(mesh_)),
         sums_(mesh_.has_strands() ? 0 : mesh_.primitive_count()),
         shift_(hash_of(options.seed, index) * 0x1p-32) {
     double area = 0;
@@ -180,9 +181,10 @@ class InstanceRounds {
         tracing_(tracing),
         lights_(lights),
         sums_(scene.instances.size(), lights ? tracing.lights : 0) {
+    const TwoSided two_sided(scene, options.sides);
     std::size_t most = 0;  // vertices of a mesh
     for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) {
-      points_.emplace_back(scene, m, options);
+      points_.emplace_back(scene, m, two_sided, options);
       most = std::max(most, scene.meshes[m].positions.size());
     }
     one_group_ = one_group(most);

@@ -1,7 +1,8 @@
 #include "bake/two_sided.hpp"
 
+#include <ImathBoxAlgo.h>
+
 #include <algorithm>
-#include <cmath>
 
 #include "bvh/opacity/connected_vertices.hpp"
 #include "bvh/opacity/welded_vertices.hpp"
@@ -18,31 +19,32 @@ Box3f box_of(const Mesh& mesh) {
   return box;
 }
 
-/// The diagonal of the scene's box, in the units of `mesh` where that is placed largest.
-float scene_size(const Scene& scene, const Mesh& mesh) {
-  std::vector<Box3f> boxes(scene.meshes.size());
-  std::transform(scene.meshes.begin(), scene.meshes.end(), boxes.begin(), box_of);
-  Box3f world;
+float largest_scale(const M44f& matrix) {
   float scale = 0;
-  for (const Instance& instance : scene.instances) {
-    const Box3f& box = boxes[instance.mesh];
-    if (box.isEmpty()) continue;
-    for (int corner = 0; corner < 8; ++corner) {
-      const V3f local((corner & 1 ? box.max : box.min).x, (corner & 2 ? box.max : box.min).y,
-                      (corner & 4 ? box.max : box.min).z);
-      world.extendBy(local * instance.to_world);
-    }
-    if (&scene.meshes[instance.mesh] != &mesh) continue;
-    for (int axis = 0; axis < 3; ++axis) {
-      const float* row = instance.to_world[axis];
-      scale = std::max(scale, V3f(row[0], row[1], row[2]).length());
-    }
-  }
-  return scale > 0 ? world.size().length() / scale : box_of(mesh).size().length();
+  for (int axis = 0; axis < 3; ++axis)
+    scale = std::max(scale, V3f(matrix[axis][0], matrix[axis][1], matrix[axis][2]).length());
+  return scale;
+}
+
+/// By mesh: the largest scale of its instances; 0 if it has none.
+std::vector<float> largest_scales(const Scene& scene) {
+  std::vector<float> scales(scene.meshes.size());
+  for (const Instance& instance : scene.instances)
+    scales[instance.mesh] = std::max(scales[instance.mesh], largest_scale(instance.to_world));
+  return scales;
+}
+
+/// The box of the instances' boxes.
+Box3f world_box(const Scene& scene, const std::vector<Box3f>& of_mesh) {
+  Box3f world;
+  for (const Instance& instance : scene.instances)
+    if (!of_mesh[instance.mesh].isEmpty())
+      world.extendBy(Imath::transform(of_mesh[instance.mesh], instance.to_world));
+  return world;
 }
 
 /// Unmarks the triangles of connected sheets that are not small.
-void leave_small_sheets(const Mesh& mesh, float scene_size, std::vector<bool>& two_sided) {
+void leave_small_sheets(const Mesh& mesh, float longest, std::vector<bool>& two_sided) {
   const std::vector<std::uint32_t> welded = welded_vertices(mesh.positions, mesh.indices);
   const auto vertex = [&](std::size_t t, int k) {
     return welded[mesh.indices[3 * t + static_cast<std::size_t>(k)]];
@@ -53,20 +55,32 @@ void leave_small_sheets(const Mesh& mesh, float scene_size, std::vector<bool>& t
   for (std::uint32_t v = 0; v < welded.size(); ++v)
     boxes[sheets.root(welded[v])].extendBy(mesh.positions[v]);
   for (std::size_t t = 0; t < two_sided.size(); ++t)
-    if (boxes[sheets.root(vertex(t, 0))].size().length() > kSmallShare * scene_size)
-      two_sided[t] = false;
+    if (boxes[sheets.root(vertex(t, 0))].size().length() > longest) two_sided[t] = false;
 }
 
 }  // namespace
 
-std::vector<bool> two_sided_triangles(const Scene& scene, const Mesh& mesh, BakeSides sides) {
-  const bool chooses = sides == BakeSides::automatic;
-  std::vector<bool> two_sided(mesh.primitive_count(), !chooses && sides != BakeSides::front);
+TwoSided::TwoSided(const Scene& scene, BakeSides sides) : scene_(scene), sides_(sides) {
+  if (sides != BakeSides::automatic) return;
+  std::vector<Box3f> boxes(scene.meshes.size());
+  std::transform(scene.meshes.begin(), scene.meshes.end(), boxes.begin(), box_of);
+  const float scene_size = world_box(scene, boxes).size().length();
+  longest_ = largest_scales(scene);
+  for (std::size_t m = 0; m < boxes.size(); ++m)
+    longest_[m] =
+        kSmallShare * (longest_[m] > 0 ? scene_size / longest_[m] : boxes[m].size().length());
+}
+
+std::vector<bool> TwoSided::triangles(const Mesh& mesh) const {
+  const bool chooses = sides_ == BakeSides::automatic && !mesh.has_strands();
+  std::vector<bool> two_sided(mesh.primitive_count(),
+                              sides_ == BakeSides::max || sides_ == BakeSides::mean);
   if (!chooses) return two_sided;
   for (std::size_t t = 0; t < two_sided.size(); ++t)
-    two_sided[t] = scene.materials[mesh.materials[t]].double_sided;
+    two_sided[t] = scene_.materials[mesh.materials[t]].double_sided;
+  const auto index = static_cast<std::size_t>(&mesh - scene_.meshes.data());
   if (std::find(two_sided.begin(), two_sided.end(), true) != two_sided.end())
-    leave_small_sheets(mesh, scene_size(scene, mesh), two_sided);
+    leave_small_sheets(mesh, longest_[index], two_sided);
   return two_sided;
 }
 

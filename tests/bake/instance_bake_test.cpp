@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "bake/two_sided.hpp"
 #include "dapple/bake.hpp"
 #include "support/scenes/scene_on_device.hpp"
 
@@ -186,6 +187,20 @@ TEST(BakeInstances, RaysAreTheirNumberWithoutATarget) {
   options.rays = 80;
   EXPECT_EQ(bake(scene, options).statistics.rays, scene.instances.size() * 2 * 80u)
       << "of both sides";
+}
+
+// Strands have segments in place of triangles, and no sides.
+TEST(InstanceBake, StrandsOfADoubleSidedMaterialAreLeftOut) {
+  Scene scene = make_procedural("scene:hair?strands=20");
+  for (Material& material : scene.materials) material.double_sided = true;
+  const TwoSided two_sided(scene, BakeSides::automatic);
+  for (const Mesh& mesh : scene.meshes) {
+    const std::vector<bool> triangles = two_sided.triangles(mesh);
+    EXPECT_EQ(triangles.size(), mesh.primitive_count());
+    if (mesh.has_strands()) {
+      EXPECT_EQ(triangles, std::vector<bool>(mesh.primitive_count()));
+    }
+  }
 }
 
 }  // namespace

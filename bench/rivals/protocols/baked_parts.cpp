@@ -50,7 +50,7 @@ std::vector<std::uint32_t> with_neighbours(const Mesh& mesh, const VertexGroups&
 }
 
 BakedPart part_of(const Scene& scene, const Mesh& mesh, const std::vector<std::uint32_t>& chosen) {
-  const std::vector<bool> two_sided = two_sided_triangles(scene, mesh, BakeSides::automatic);
+  const std::vector<bool> two_sided = TwoSided(scene, BakeSides::automatic).triangles(mesh);
   constexpr std::uint32_t kNone = ~0u;
   std::vector<std::uint32_t> number(mesh.positions.size(), kNone);
   BakedPart part;

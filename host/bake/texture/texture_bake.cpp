@@ -7,7 +7,6 @@
 #include "bake/texture/seams.hpp"
 #include "bake/texture/texel_cover.hpp"
 #include "bake/texture/uv_overlap.hpp"
-#include "bake/two_sided.hpp"
 #include "bake/vertex_bake.hpp"
 #include "sampling/random_choice.hpp"
 
@@ -119,7 +118,7 @@ SmallParts parts_of_texels(const Mesh& mesh, const SampledTexels& texels) {
 }  // namespace
 
 TextureBake::TextureBake(const Scene& scene, const BakeOptions& options, TextureLayout layout)
-    : scene_(scene), options_(options) {
+    : scene_(scene), options_(options), two_sided_(scene, options.sides) {
   const std::size_t texels = std::size_t{options.texture_size} * options.texture_size;
   texture_.size = options.texture_size;
   texture_.layout = std::move(layout);
@@ -132,7 +131,7 @@ TextureBake::TextureBake(const Scene& scene, const BakeOptions& options, Texture
 
 bool TextureBake::add(std::uint32_t index, const Placements& placements, BakeTracing& tracing) {
   const Mesh& mesh = scene_.meshes[index];
-  const std::vector<bool> two_sided = two_sided_triangles(scene_, mesh, options_.sides);
+  const std::vector<bool> two_sided = two_sided_.triangles(mesh);
   const std::uint32_t hash = hash_of(options_.seed, index);
   std::vector<V2f> corners = texture_.layout.corners[index];
   if (corners.empty()) return true;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "bake/samples/sample_rounds.hpp"
+#include "bake/two_sided.hpp"
 
 namespace dapple {
 
@@ -33,6 +34,7 @@ class TextureBake {
 
   const Scene& scene_;
   const BakeOptions& options_;
+  const TwoSided two_sided_;
   BakedTexture texture_;
   std::vector<bool> known_, covered_;  ///< by texel
   std::vector<float> weight_;          ///< part of each texel that triangles cover

@@ -14,12 +14,11 @@ namespace dapple {
 
 /// Finds the triangles of the mesh that lie inside an opaque surface: around each corner opaque
 /// triangles close a ring. Corners at equal positions count as one: `welded`, of welded_vertices().
-/// A leaf has no such triangles, a
-/// wall, a trunk or the ground has few others; where these make up most of a connected surface, its
-/// rim counts, too. Returns for each of them the mean chord of what its connected surface encloses,
-/// 4 volumes / area (Cauchy), in metres and above 0: of a tube the diameter. It does not matter
-/// which side the triangles face. 0 for other triangles of the mesh; empty if there are none.
-/// Almost linear in the triangles.
+/// A leaf has no such triangles, a wall, a trunk or the ground has few others; where these make up
+/// most of a connected surface, its rim counts, too. Returns for each of them the mean chord of
+/// what its connected surface encloses, 4 volumes / area (Cauchy), in metres and above 0: of a tube
+/// the diameter. It does not matter which side the triangles face. 0 for other triangles of the
+/// mesh; empty if there are none. Almost linear in the triangles.
 std::vector<float> interior_triangles(const OpaqueTriangles& opaque,
                                       std::span<const std::uint32_t> welded);
 
