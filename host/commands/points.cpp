@@ -22,7 +22,6 @@
 #include "dapple/error.hpp"
 #include "files/output_file.hpp"
 #include "points/point_file.hpp"
-#include "points/point_sets.hpp"
 #include "points/point_sources.hpp"
 #include "render/stopwatch.hpp"
 
@@ -197,31 +196,6 @@ PointOptions options_of(const Arguments& a) {
   return options;
 }
 
-/// Notes that options may not do what was meant, for the scene without its ground and copies.
-void note_options(const PointOptions& options, const Scene& scene, const std::vector<V3f>& points,
-                  std::vector<std::string>& notes) {
-  if (options.rays % kPointSets != 0)
-    notes.push_back(fmt::format("--rays is {}; {} are traced, a multiple of {}", options.rays,
-                                options.rays / kPointSets * kPointSets, kPointSets));
-  if (!options.ground && !(options.period_x > 0)) return;
-  const Box3f bounds = scene_bounds(scene);
-  if (bounds.isEmpty()) return;
-  const auto below =
-      std::ranges::count_if(points, [&](const V3f& point) { return point.y < bounds.min.y; });
-  if (options.ground && below > 0)
-    notes.push_back(fmt::format("{} of {} points lie below the ground, which is at y = {:.4g}",
-                                below, points.size(), bounds.min.y));
-  constexpr float kOverlap = 1.25f;  // leaves reach over a little
-  const auto note_period = [&](char axis, float width, float period) {
-    if (period > 0 && width >= kOverlap * period)
-      notes.push_back(fmt::format(
-          "the scene is {:.4g} m wide along {}, and its period {:.4g} m: copies overlap", width,
-          axis, period));
-  };
-  note_period('X', bounds.size().x, options.period_x);
-  note_period('Z', bounds.size().z, options.period_z);
-}
-
 /// Notes which columns of the file of points write_points() leaves out.
 void note_replaced(const Arguments& a, const PointList& list, PointResult& result) {
   std::vector<std::string> names;
@@ -270,7 +244,6 @@ void run_points(const Arguments& a) {
   const PointList list = points_of(a, scene);
   std::vector<std::string> notes = list.notes;
   if (!a.suns.empty()) options.suns = read_suns(a.suns, &notes);
-  note_options(options, scene, list.points, notes);
   const double load_seconds = total.seconds();
   progress.announce("building", "the BVH");
   RenderControl control;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dapple/error.hpp"
 #include "points/sun_irradiance.hpp"
 #include "render/queries/point_occlusion.hpp"
 #include "sampling/bias_estimate.hpp"
@@ -44,8 +45,8 @@ V3d sum_of(const std::vector<PointIrradiance>& found, const LightLayer& layer,
 }
 
 BiasSample::BiasSample(const SceneOfPoints& on, std::span<const V3f> points,
-                       std::span<const V3f> normals, const PointOptions& options)
-    : on_(on), options_(options) {
+                       std::span<const V3f> normals, const PointOptions& options, Stop stop)
+    : on_(on), options_(options), stop_(std::move(stop)) {
   if (points.empty() || options.estimator == Estimator::exact || !(options.footprint > 0)) return;
   constexpr std::size_t most = kBiasSamples / kFewestSets;
   for (const std::size_t i : evenly_chosen(points.size(), most)) {
@@ -56,6 +57,12 @@ BiasSample::BiasSample(const SceneOfPoints& on, std::span<const V3f> points,
   sets_ = static_cast<int>(std::min<std::size_t>(kPointSets, sets));
   share_of_points_ = static_cast<double>(points_.size()) / static_cast<double>(points.size());
   share_ = share_of_points_ * sets_ / kPointSets;
+}
+
+RenderControl BiasSample::control() const {
+  RenderControl control;
+  control.stop = stop_;
+  return control;
 }
 
 std::vector<BiasCorrection> BiasSample::compare(const std::vector<std::string>& names,
@@ -70,6 +77,7 @@ std::vector<BiasCorrection> BiasSample::compare(const std::vector<std::string>& 
       OcclusionOptions options = rays_of_set(options_, set);
       options.estimator = estimator;
       const std::vector<Values> found = find(options);
+      if (stop_()) throw Error(ErrorKind::failed, "the measurement was stopped");
       std::vector<Values>& all = estimator == Estimator::exact ? exact : prefiltered;
       for (std::size_t k = 0; k < names.size(); ++k) {
         all[k].values.insert(all[k].values.end(), found[k].values.begin(), found[k].values.end());
@@ -114,7 +122,7 @@ BiasCorrection BiasSample::of_occlusion(const std::string& name, const std::vect
   return compare({name}, [&](OcclusionOptions options) {
     options.distance = distance;
     options.falloff = falloff;
-    const auto found = occlusion(on_.device, on_.uploaded, points_, normals, options);
+    const auto found = occlusion(on_.device, on_.uploaded, points_, normals, options, control());
     std::vector<Values> of_one(1);
     for (std::uint32_t i = 0; i < found.size(); ++i) {
       of_one[0].values.push_back(double{found[i]});
@@ -133,7 +141,7 @@ std::vector<BiasCorrection> BiasSample::of_lights(const std::vector<LightLayer>&
   for (const LightLayer& layer : layers) names.push_back("light." + layer.name);
   return compare(names, [&](const OcclusionOptions& of) {
     const auto found = irradiance(on_.device, on_.uploaded, on_.scene.lights, points_, normals_,
-                                  {of.rays, of.estimator, of.footprint, of.seed});
+                                  {of.rays, of.estimator, of.footprint, of.seed}, control());
     const V3d one(1, 1, 1);
     std::vector<Values> of_layers(layers.size());
     for (std::size_t l = 0; l < layers.size(); ++l)
@@ -152,7 +160,7 @@ std::vector<BiasCorrection> BiasSample::of_rings(const std::vector<ZenithRing>& 
   std::vector<std::string> names;
   for (std::size_t k = 0; k < rings.size(); ++k) names.push_back(gap_name(k));
   return compare(names, [&](const OcclusionOptions& of) {
-    const auto means = gap_fractions(on_, rings, points_, of, [](double) { return true; });
+    const auto means = gap_fractions(on_, rings, points_, of, [&](double) { return !stop_(); });
     std::vector<Values> of_rings(rings.size());
     for (std::size_t k = 0; k < rings.size(); ++k)
       for (std::uint32_t i = 0; i < points_.size(); ++i) {
@@ -168,8 +176,8 @@ BiasCorrection BiasSample::of_suns() {
   return compare({"sun"}, [&](const OcclusionOptions& of) {
     PointOptions options = options_;
     options.estimator = of.estimator;
-    const auto parts =
-        sun_parts(on_, suns, points_, normals_, options, 1, of.seed, [](double) { return true; });
+    const auto parts = sun_parts(on_, suns, points_, normals_, options, 1, of.seed,
+                                 [&](double) { return !stop_(); });
     std::vector<Values> of_one(1);
     for (std::uint32_t i = 0; i < points_.size(); ++i) {
       if (!(suns.unoccluded(normals_[i]) > 0)) continue;

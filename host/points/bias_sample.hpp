@@ -27,9 +27,10 @@ Imath::V3d sum_of(const std::vector<PointIrradiance>& found, const LightLayer& l
 
 class BiasSample : public BiasSource {
  public:
-  /// No points are chosen where the rays are exact already. `on` must outlive the sample.
+  /// No points are chosen where the rays are exact already. `on` must outlive the sample. What
+  /// traces rays throws Error failed once `stop` returns true.
   BiasSample(const SceneOfPoints& on, std::span<const V3f> points, std::span<const V3f> normals,
-             const PointOptions& options);
+             const PointOptions& options, Stop stop);
 
   [[nodiscard]] bool is_empty() const { return points_.empty(); }
   /// The sample has a fixed size.
@@ -62,10 +63,12 @@ class BiasSample : public BiasSource {
 
   BiasCorrection of_occlusion(const std::string& name, const std::vector<V3f>& normals,
                               float distance, float falloff);
+  [[nodiscard]] RenderControl control() const;
   std::vector<BiasCorrection> compare(const std::vector<std::string>& names, const Find& find);
 
   const SceneOfPoints& on_;
   PointOptions options_;
+  Stop stop_;
   std::vector<V3f> points_, normals_;
   int sets_ = 0;
   double share_ = 0;                                  ///< of all values

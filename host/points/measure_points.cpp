@@ -13,6 +13,7 @@
 #include "film/light_layers.hpp"
 #include "points/bias_sample.hpp"
 #include "points/local_footprint.hpp"
+#include "points/option_notes.hpp"
 #include "points/periodic.hpp"
 #include "points/point_ray.hpp"
 #include "points/ray_slices.hpp"
@@ -41,7 +42,7 @@ class Measurement {
         options_(options),
         control_(control),
         result_(result),
-        sample_(on, points, normals, options) {
+        sample_(on, points, normals, options, [this] { return is_stopped(); }) {
     if (options.ao || options.bent) steps_ += kPointSets;
     if (options.sky_view_factor) steps_ += kPointSets;
     if (options.rings > 0) steps_ += kPointSets;
@@ -313,6 +314,7 @@ PointResult measure_points(Scene scene, std::span<const V3f> points, std::span<c
   check_suns(options.suns);
   PointResult result;
   const Stopwatch preparing;
+  result.notes = option_notes(options, scene, points);
   std::vector<V3f> in_period;
   if (options.period_x > 0) {
     check_scene(scene);
@@ -326,7 +328,7 @@ PointResult measure_points(Scene scene, std::span<const V3f> points, std::span<c
   result.build_seconds = on.build_seconds;
   result.prepare_seconds = preparing.seconds() - on.build_seconds;
   result.device = on.device.info().name;
-  result.notes = on.scene.warnings;
+  result.notes.insert(result.notes.end(), on.scene.warnings.begin(), on.scene.warnings.end());
   const Stopwatch tracing;
   Measurement(on, points, normals, options, control, result).run();
   result.trace_seconds = tracing.seconds();

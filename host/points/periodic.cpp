@@ -10,8 +10,6 @@
 namespace dapple {
 namespace {
 
-/// Tangent of 85 degrees from the zenith.
-constexpr double kReach = 11.43;
 constexpr double kMaxInstances = 4e6;
 
 /// The scene and its period along one axis.
@@ -60,7 +58,8 @@ void repeat(Scene& scene, float period_x, float period_z, std::span<const V3f> p
   if (bounds.isEmpty()) return;
   Box3f around = bounds;
   for (const V3f& point : points) around.extendBy(point);
-  const double reach = kReach * double{around.size().y};
+  const double reach =  // the tangent of the angle to the zenith, times the height
+      std::sqrt(1 / (kLowestPeriodic * kLowestPeriodic) - 1) * double{around.size().y};
   const auto copies = [&](int axis, float period) {
     return Interval(bounds, axis, period).copies(reach, around.min[axis], around.max[axis]);
   };

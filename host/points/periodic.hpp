@@ -9,6 +9,10 @@
 
 namespace dapple {
 
+/// The cosine to the zenith of the lowest rays that meet copies all the way: five degrees above the
+/// horizon.
+inline constexpr double kLowestPeriodic = 0.08715;
+
 /// Whether a light is neither a sun nor a dome. Copies do not emit, so points below other copies of
 /// such scenes are not alike.
 bool has_placed_light(const Scene& scene);
@@ -19,8 +23,8 @@ std::vector<V3f> points_in_period(const Scene& scene, float period_x, float peri
                                   std::span<const V3f> points);
 
 /// Adds copies of all instances at multiples of the periods, so far that rays from the points leave
-/// the height of scene and points before they leave the copies, but for those within five degrees
-/// of the horizon. Throws Error usage if that takes too many copies.
+/// the height of scene and points before they leave the copies, but for those below
+/// kLowestPeriodic. Throws Error usage if that takes too many copies.
 void repeat(Scene& scene, float period_x, float period_z, std::span<const V3f> points);
 
 }  // namespace dapple

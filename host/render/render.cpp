@@ -291,7 +291,8 @@ void finish(RenderResult& result, const PictureContent& content, const TracedPic
                  metadata,   options.deep ? picture.deep.alpha(picture.samples) : DeepAlpha{}};
   set_ambient(result.film.metadata, statistics.ambient);
   add_largest_irradiances(statistics, picture.largest, layout, lights);
-  if (has_bias(options) && options.report_bias > 0) add_bias(result, picture, layout, lights);
+  if (has_bias(options) && options.report_bias > 0)
+    add_bias(result, picture, layout, lights, control.resume);
   add_cryptomattes(result.film, picture.mattes, picture.samples, names, options.cryptomattes);
   for (std::string& note : notes_of_unseen_lights(result.film, lights))
     statistics.notes.push_back(std::move(note));

@@ -25,7 +25,8 @@ std::vector<std::vector<float>> FilmMoments::variances() const {
   if (options_.ao) out.push_back(ao_variances());
   for (std::size_t light = 0; light < layout_.lights.size(); ++light) {
     LightVariances of_light = light_variances(light);
-    const double factor = 1.0 / (of_light.largest * of_light.largest);
+    const double largest = of_light.largest > 0 ? of_light.largest : 1.0;
+    const double factor = 1.0 / (largest * largest);
     for (float& variance : of_light.absolute) variance = static_cast<float>(variance * factor);
     out.push_back(std::move(of_light.absolute));
   }
@@ -57,8 +58,7 @@ double FilmMoments::largest_unoccluded(const LightGroup& group,
     }
     found = std::max(found, mean(value, p));
   }
-  const double least = std::min(found, bound);
-  return least > 0 ? least : 1.0;
+  return std::min(found, bound);
 }
 
 // Occlusion is 0 where samples missed.
@@ -133,8 +133,7 @@ double FilmMoments::largest_unoccluded(const LightPass& pass, const Variance& va
       of_rows[row] = std::max(of_rows[row], mean - error);
     }
   });
-  const double largest = *std::max_element(of_rows.begin(), of_rows.end());
-  return largest > 0 ? largest : 1.0;
+  return *std::max_element(of_rows.begin(), of_rows.end());
 }
 
 }  // namespace dapple

@@ -32,7 +32,8 @@ class FilmMoments {
   [[nodiscard]] std::vector<std::vector<float>> variances() const;
 
   /// What the errors of every pass are relative to: 1 for AO, of lights the largest unoccluded
-  /// irradiance at radiance 1. Then the largest of each of FilmLayout::groups, at its radiances.
+  /// irradiance at radiance 1. Then the largest of each of FilmLayout::groups, at its radiances. 0
+  /// where all is dark: then errors and biases are absolute.
   [[nodiscard]] std::vector<double> largest_values() const;
 
  private:
@@ -64,7 +65,7 @@ class FilmMoments {
   /// batch_variances() of a light's irradiance, and its largest unoccluded irradiance.
   struct LightVariances {
     std::vector<float> absolute;
-    double largest = 1;
+    double largest = 0;
   };
   [[nodiscard]] LightVariances light_variances(std::size_t light) const;
   /// The largest unoccluded irradiance of all pixels. `variance`: returns variance_at() of a pixel;

@@ -11,6 +11,7 @@ namespace {
 struct Stopped {
   bool interrupted;
   int calls;  ///< of the stop function
+  std::size_t columns;
 };
 
 /// Stops at the `last` call, counted from 1.
@@ -24,6 +25,7 @@ Stopped stopped_at(const PointOptions& options, int last) {
   const PointResult result =
       measure_points(make_procedural("scene:tree?leaves=500"), points, normals, options, control);
   stopped.interrupted = result.interrupted;
+  stopped.columns = result.columns.size();
   return stopped;
 }
 
@@ -43,6 +45,21 @@ TEST(PointInterruption, AnUnfinishedSetIsLeft) {
   const Stopped never = stopped_at(options, 1 << 30);
   EXPECT_FALSE(never.interrupted);
   EXPECT_GT(never.calls, 2 * 16);
+}
+
+TEST(PointInterruption, SoAreExactValuesForTheCorrectionOfTheBias) {
+  PointOptions options;
+  options.rays = 1 << 12;
+  options.max_bias = 0;  // no footprint is chosen
+  options.sky_view_factor = false;
+  const Stopped never = stopped_at(options, 1 << 30);
+  EXPECT_FALSE(never.interrupted);
+  EXPECT_EQ(never.columns, 2u) << "ao, ao_error";
+  // They are found last.
+  const Stopped last = stopped_at(options, never.calls);
+  EXPECT_TRUE(last.interrupted);
+  EXPECT_EQ(last.calls, never.calls);
+  EXPECT_EQ(last.columns, 0u);
 }
 
 }  // namespace

@@ -146,6 +146,14 @@ FilmMetadata metadata_of(const BakeStatistics& statistics, const std::string& so
   return m;
 }
 
+/// The first TEXCOORD_n that a primitive lacks and none of its textures names: one that does reads
+/// the texel at 0, 0, and must go on to.
+std::uint32_t free_uv_set(const gltf::SourceFile& file, const VertexSource& source) {
+  std::uint32_t set = file.uv_sets(source.mesh, source.primitive);
+  while (!file.texture_with_uvs(source.mesh, source.primitive, set).empty()) ++set;
+  return set;
+}
+
 }  // namespace
 
 FileUvs choose_uvs(const gltf::SourceFile& file, const Scene& scene, const BakeOptions& options) {
@@ -181,7 +189,7 @@ std::vector<gltf::TexturedPrimitive> textured_primitives(const gltf::SourceFile&
         if (!layout.chart_of.empty())
           copies.add_corner(mesh.indices[corner], layout.chart_of[m][corner / 3],
                             layout.corners[m][corner]);
-      if (!layout.chart_of.empty()) primitive.uv_set = file.uv_sets(source.mesh, source.primitive);
+      if (!layout.chart_of.empty()) primitive.uv_set = free_uv_set(file, source);
       primitives.push_back(std::move(primitive));
     }
   }

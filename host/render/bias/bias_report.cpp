@@ -1,5 +1,6 @@
 #include "render/bias/bias_report.hpp"
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -121,6 +122,16 @@ std::vector<NamedBias> layers_with_bias(const FilmLayout& layout,
   return found;
 }
 
+std::string no_bias_note(const std::string& resumed) {
+  const std::string none = "the bias is not reported: ";
+  if (resumed.empty())
+    return none + "too few rays were traced exactly; --report-bias 100% takes all";
+  return fmt::format(
+      "{}this run adds too few exact rays to those of {}, which are not kept; the "
+      "picture made with it has their bias",
+      none, resumed);
+}
+
 /// The noise and the bias of each pass with a known noise, together.
 void add_whole_errors(RenderStatistics& statistics, const PictureBias& bias, double seen,
                       const FilmLayout& layout, const std::vector<Light>& lights) {
@@ -169,16 +180,13 @@ void add_largest_irradiances(RenderStatistics& statistics, const std::vector<dou
 }
 
 void add_bias(RenderResult& result, const TracedPicture& picture, const FilmLayout& layout,
-              const std::vector<Light>& lights) {
+              const std::vector<Light>& lights, const std::string& resumed) {
   RenderStatistics& statistics = result.statistics;
   const Plane& alpha = *result.film.find("A");
   const auto seen = std::count_if(alpha.pixels.begin(), alpha.pixels.end(),
                                   [](float value) { return value > 0; });
   if (picture.bias.passes.empty()) {
-    if (seen > 0 && statistics.footprint > 0)
-      statistics.notes.emplace_back(
-          "the bias is not reported: too few rays were traced exactly; --report-bias 100% takes "
-          "all");
+    if (seen > 0 && statistics.footprint > 0) statistics.notes.push_back(no_bias_note(resumed));
     return;
   }
   for (const NamedBias& named : layers_with_bias(layout, lights)) {
@@ -192,7 +200,7 @@ void add_bias(RenderResult& result, const TracedPicture& picture, const FilmLayo
 
 PictureBias picture_bias(const BiasSums& sums, const HostView& film, const SideSamples& samples,
                          const FilmLayout& layout, const View& view,
-                         const std::vector<double>& divisors) {
+                         const std::vector<double>& largest) {
   if (sums.exact_rays < kLeastRays) return {};
   const std::size_t layers = sums.differences.size();
   const std::size_t sides = samples.backs.empty() ? 1 : 2, of_side = layers / sides;
@@ -200,13 +208,14 @@ PictureBias picture_bias(const BiasSums& sums, const HostView& film, const SideS
   const BiasEstimate estimate(film.values<std::int64_t>().first(layout.pixels), view,
                               sums.exact_rays / sums.rays,
                               sums.exact_rays / (static_cast<double>(of_side) * all_samples));
+  const auto divisor = [&](std::size_t i) { return largest[i] > 0 ? largest[i] : 1.0; };
   PictureBias out;
   for (std::size_t side = 0; side < sides; ++side) {
     const std::vector<std::uint32_t>& of_samples = side == 0 ? samples.fronts : samples.backs;
     const auto* const differences = &sums.differences[side * of_side];
     for (std::size_t layer = 0; layer < of_side; ++layer)
       out.passes.push_back(estimate.of(of_samples, [&](std::uint32_t pixel) {
-        return double{differences[layer][pixel]} / divisors[layer];
+        return double{differences[layer][pixel]} / divisor(layer);
       }));
     for (std::size_t g = 0; g < layout.groups.size(); ++g) {
       const LightGroup& group = layout.groups[g];
@@ -215,7 +224,7 @@ PictureBias picture_bias(const BiasSums& sums, const HostView& film, const SideS
         for (std::size_t i = 0; i < group.lights.size(); ++i)
           sum += group.luminances[i] *
                  double{differences[group.lights[i] + (layout.ao ? 1 : 0)][pixel]};
-        return sum / divisors[of_side + g];
+        return sum / divisor(of_side + g);
       }));
     }
   }

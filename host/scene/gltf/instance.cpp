@@ -169,20 +169,33 @@ class Skeletons {
  public:
   Skeletons(const Document& document, const Pose& pose) : document_(document), pose_(pose) {}
 
-  /// Returns null for the skin -1.
-  const std::vector<M44d>* joints(int skin) {
-    if (skin < 0) return nullptr;
+  /// From the mesh in its bind pose to the space that placement() places. Returns null for a use
+  /// without a skin.
+  const std::vector<M44d>* joints(const MeshUse& use) {
+    if (use.skin < 0) return nullptr;
+    const auto [known, is_new] = joints_.try_emplace({use.skin, use.mirrored});
+    if (!is_new) return &known->second;
     if (world_.empty()) world_ = world_matrices(document_, pose_);
-    const auto known = joints_.find(skin);
-    if (known != joints_.end()) return &known->second;
-    return &joints_.emplace(skin, joint_matrices(document_, skin, world_)).first->second;
+    known->second = joint_matrices(document_, use.skin, world_);
+    if (use.mirrored)
+      for (M44d& joint : known->second) joint *= mirror();
+    return &known->second;
+  }
+
+  /// Joints place a skinned mesh; glTF says that its node's own matrix is ignored, but for the
+  /// winding of its triangles, which the sign of its determinant tells (section 3.7.4).
+  static PlacedNode placement(const MeshUse& use, const PlacedNode& at) {
+    if (use.skin < 0) return at;
+    return {at.node, use.mirrored ? mirror() : M44d()};
   }
 
  private:
+  static M44d mirror() { return M44d().scale(V3d(-1, 1, 1)); }
+
   const Document& document_;
   const Pose& pose_;
   std::vector<M44d> world_;
-  std::map<int, std::vector<M44d>> joints_;
+  std::map<std::pair<int, bool>, std::vector<M44d>> joints_;  // by skin and MeshUse::mirrored
 };
 
 /// Returns the accessor of a skin's inverse bind matrices, -1 for none.
@@ -216,13 +229,12 @@ void add_instances(const Document& document, const std::vector<PlacedNode>& plac
     auto known = parts_of_use.find(use);
     if (known == parts_of_use.end()) {
       if (use.skin >= 0) totals.sparse_values += sparse_count(document, inverse_of(document, use));
-      auto parts = read_mesh(document, use, skeletons.joints(use.skin), materials, scene, totals);
+      auto parts = read_mesh(document, use, skeletons.joints(use), materials, scene, totals);
       known = parts_of_use.emplace(use, std::move(parts)).first;
     }
     if (known->second.empty()) continue;
-    // Joints place a skinned mesh; glTF says that its node's own matrix is ignored.
-    const PlacedNode stands{at.node, use.skin >= 0 ? M44d() : at.to_world};
-    for (const M44d& to_world : node_matrices(document, stands, scene.instances.size())) {
+    const PlacedNode placed_at = Skeletons::placement(use, at);
+    for (const M44d& to_world : node_matrices(document, placed_at, scene.instances.size())) {
       add_placement(known->second, to_world, at.node, node.name, scene);
     }
   }

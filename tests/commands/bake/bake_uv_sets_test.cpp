@@ -169,6 +169,26 @@ TEST_F(BakeUvSets, OfCoordinatesOfItsOwnTheStatisticsHaveTheCharts) {
   EXPECT_EQ(statistics()["overlap"], 0.0);
 }
 
+// Its colour is that of the texel at 0, 0; coordinates of the occlusion would show others.
+TEST_F(BakeUvSets, ASetThatAColourTextureReadsInVainIsNotTaken) {
+  GltfBuilder builder;
+  builder.add_triangle();
+  builder.doc["meshes"][0]["primitives"][0]["material"] = 0;
+  const int view = builder.add_view(test::png::with_alpha(1, 1, {255}));
+  builder.doc["images"] = json::array({{{"bufferView", view}, {"mimeType", "image/png"}}});
+  builder.doc["textures"] = json::array({{{"source", 0}}});
+  builder.doc["materials"] =
+      json::array({{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}});
+  write("in.glb", builder.glb());
+  const std::string notes = notes_of();
+  EXPECT_TRUE(contains(notes, "coordinates of its own, TEXCOORD_1")) << notes;
+  EXPECT_EQ(set_used(), 1);
+  const test::GltfData file(path("out.glb"));
+  const json attributes = file.doc["meshes"][0]["primitives"][0]["attributes"];
+  EXPECT_EQ(file.floats(attributes["TEXCOORD_0"]), std::vector<float>(6));
+  EXPECT_NE(file.floats(attributes["TEXCOORD_1"]), std::vector<float>(6));
+}
+
 TEST_F(BakeUvSets, AnOverlapThatIsAcceptedIsToldWithItsShare) {
   // A large square without the texels whose centre is on its diagonal, and a small one on two.
   const Rect two_texels = {10 / 64.0f, 20 / 64.0f, 12 / 64.0f, 21 / 64.0f};

@@ -203,6 +203,11 @@ TEST(BiasReport, LightsAreRelativeToTheirLargestIrradianceWithoutOcclusion) {
     EXPECT_NEAR(largest.at("light.of_1"), one, 1e-3 * one);
     EXPECT_NEAR(largest.at("light.both"), 6 * one, 6e-3 * one);
   }
+  Scene dark = scene;
+  for (Light& light : dark.lights) light.direction = -light.direction;  // from below
+  options.look = LookAt{{0, 9, 0}, {0, 0, 0}, {0, 0, 1}};               // the top alone
+  for (const auto& [layer, value] : render(dark, options).statistics.largest_irradiance)
+    EXPECT_EQ(value, 0) << layer;
   options.target_rmse = 0;
   EXPECT_TRUE(render(scene, options).statistics.largest_irradiance.empty());
 }
@@ -265,8 +270,12 @@ TEST(BiasReport, OfAResumedPictureItIsThatOfTheSamplesOfTheLastRun) {
   const double of_all = mean_difference(resumed.film, exact, "ao.R");
   const double of_new = 1.5 * of_all - 0.5 * mean_difference(before, exact_before, "ao.R");
   EXPECT_NEAR(resumed.statistics.bias.at("ao").mean, of_new, 0.05 * std::fabs(of_new) + 2e-5);
-  // A run that has nothing to trace has nothing to report.
-  EXPECT_TRUE(render(tree(), options, second).statistics.bias.empty());
+  // A run that has nothing to trace has nothing to report, and says so.
+  const RenderStatistics again = render(tree(), options, second).statistics;
+  EXPECT_TRUE(again.bias.empty());
+  const std::string said = "this run adds too few exact rays to those of " + path.string();
+  EXPECT_TRUE(std::ranges::any_of(
+      again.notes, [&](const std::string& note) { return note.find(said) != std::string::npos; }));
   std::filesystem::remove(path);
 }
 

@@ -122,7 +122,7 @@ TEST(GltfMorph, WeightsOfTheWrongNumberAreRefusedByChannel) {
 /// ones. The bar's own node has another translation, which must have no effect.
 struct Bar {
   GltfBuilder b;
-  int mesh_node = 0, upper = 0;
+  int mesh_node = 0, lower = 0, upper = 0;
 };
 
 Bar make_bar(const std::vector<float>& middle_weights = {0.5f, 0.5f, 0, 0}) {
@@ -145,13 +145,13 @@ Bar make_bar(const std::vector<float>& middle_weights = {0.5f, 0.5f, 0, 0}) {
                               {"indices", indices}});
   b.doc["nodes"][bar.mesh_node]["translation"] = {100, 100, 100};
   bar.upper = b.add("nodes", {{"translation", {0, 1, 0}}});
-  const int lower = b.add("nodes", {{"children", {bar.upper}}});
+  bar.lower = b.add("nodes", {{"children", {bar.upper}}});
   const int view = b.add_view(pack<float>({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0,  0, 1,
                                            1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -1, 0, 1}));
   const int inverse =
       b.add("accessors",
             {{"bufferView", view}, {"componentType", kFloat}, {"count", 2}, {"type", "MAT4"}});
-  b.add("skins", {{"joints", {lower, bar.upper}}, {"inverseBindMatrices", inverse}});
+  b.add("skins", {{"joints", {bar.lower, bar.upper}}, {"inverseBindMatrices", inverse}});
   b.doc["nodes"][bar.mesh_node]["skin"] = 0;
   return bar;
 }
@@ -176,6 +176,25 @@ TEST(GltfSkin, ABarIsBentByAQuarterTurnOfItsUpperJoint) {
   expect_near(vertex(scene, 5), V3f(-1, 2, 0));
   // The mean of (1, 1, 0) and (0, 2, 0), the positions to which the two joints move it.
   expect_near(vertex(scene, 3), V3f(0.5f, 1.5f, 0));
+}
+
+/// The normal of the bar's first triangle by its winding, in the world.
+V3f face_normal(const Scene& scene) {
+  const Instance& instance = scene.instances.at(0);
+  const auto& indices = scene.meshes[instance.mesh].indices;
+  const V3f a = vertex(scene, indices[0]), b = vertex(scene, indices[1]),
+            c = vertex(scene, indices[2]);
+  const V3f normal = (b - a).cross(c - a).normalized();
+  return instance.to_world.determinant() < 0 ? -normal : normal;
+}
+
+TEST(GltfSkin, BelowAMirroredNodeTheFrontOfATriangleIsMirroredWithIt) {
+  Bar bar = make_bar();
+  const V3f front = face_normal(bar.b.load());
+  bar.b.add("nodes", {{"children", {bar.mesh_node, bar.lower}}, {"scale", {1, 1, -1}}});
+  const Scene mirrored = bar.b.load();
+  expect_near(vertex(mirrored, 5), V3f(1, 2, 0));
+  expect_near(face_normal(mirrored), V3f(front.x, front.y, -front.z));
 }
 
 TEST(GltfSkin, JointsThatAreAnimatedCarryTheMesh) {

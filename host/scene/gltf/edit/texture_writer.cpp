@@ -57,6 +57,16 @@ std::size_t add_uvs(Editor& editor, const std::vector<Imath::V2f>& uvs) {
       {{"bufferView", view}, {"componentType", kFloat}, {"count", uvs.size()}, {"type", "VEC2"}});
 }
 
+/// Sets that the primitive lacks before its new one are 0, 0 everywhere.
+void add_uv_sets(Editor& editor, const TexturedPrimitive& textured, Json& attributes) {
+  const std::vector<Imath::V2f> zero(textured.uvs.size(), Imath::V2f(0, 0));
+  for (std::uint32_t set = 0; set < textured.uv_set; ++set) {
+    const std::string name = fmt::format("TEXCOORD_{}", set);
+    if (!attributes.contains(name)) attributes[name] = add_uvs(editor, zero);
+  }
+  attributes[fmt::format("TEXCOORD_{}", textured.uv_set)] = add_uvs(editor, textured.uvs);
+}
+
 std::size_t add_indices(Editor& editor, const std::vector<std::uint32_t>& indices,
                         std::size_t vertices) {
   const bool is_short = vertices < 0xffff;
@@ -83,8 +93,7 @@ bool replace_vertices(Editor& editor, const TexturedPrimitive& textured) {
   copy_all(primitive["attributes"]);
   if (primitive.contains("targets"))
     for (Json& target : primitive["targets"]) copy_all(target);
-  primitive["attributes"][fmt::format("TEXCOORD_{}", textured.uv_set)] =
-      add_uvs(editor, textured.uvs);
+  add_uv_sets(editor, textured, primitive["attributes"]);
   primitive["indices"] = add_indices(editor, textured.indices, textured.source.size());
   primitive.erase("mode");  // triangles
   const bool was_compressed = remove_extension(primitive, extension::kDraco);

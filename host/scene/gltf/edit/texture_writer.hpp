@@ -16,7 +16,7 @@ namespace dapple::gltf {
 /// A primitive with texture coordinates of its own.
 struct TexturedPrimitive {
   std::uint32_t mesh = 0, primitive = 0;  ///< indices in the file
-  std::uint32_t uv_set = 0;               ///< n of TEXCOORD_n
+  std::uint32_t uv_set = 0;               ///< n of TEXCOORD_n; lower ones that lack become 0, 0
   /// For each new vertex the vertex of the file whose copy it is, and its texture coordinates.
   /// Empty: the file has TEXCOORD_n, and the vertices stay as they are.
   std::vector<std::uint32_t> source;

@@ -49,6 +49,7 @@ MeshUse use_of(const Document& document, const PlacedNode& placed, const Pose& p
   use.weights = morph_weights(node, mesh, moved);
   if (moved != nullptr && moved->weights) use.node = placed.node;
   if (node.skin >= 0 && is_bound_to_joints(mesh)) use.skin = node.skin;
+  use.mirrored = use.skin >= 0 && placed.to_world.determinant() < 0;
   if (options.line_radius > 0 && has_lines(mesh)) {
     use.line_radius =
         use.skin >= 0 ? options.line_radius : radius_in_mesh(options.line_radius, placed.to_world);

@@ -16,6 +16,7 @@ struct MeshUse {
   int mesh = 0;                 ///< glTF's index
   float line_radius = 0;        ///< of its lines, in the mesh's units; 0: lines are left out
   int skin = -1;                ///< the skin of its vertices, -1 for none
+  bool mirrored = false;        ///< skinned, and its node turns the winding of its triangles
   std::vector<double> weights;  ///< of its morph targets; empty when all are 0
   bool colors = false;          ///< SceneOptions::colors
   int node = -1;  ///< the node that uses it, if it changes with time; -1: can be shared
