@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "commands/arguments/argument_errors.hpp"
 #include "commands/arguments/option_text.hpp"
 #include "commands/arguments/output_paths.hpp"
 #include "commands/arguments/shared_options.hpp"
@@ -67,12 +68,13 @@ void add_quantity_options(CLI::App& app, Arguments& a) {
          "--rays", o.rays,
          "Rays for each value of a point. They are divided into eight independent sets, from "
          "which the standard error is estimated")
+      ->check(of_values("8..1048576"))
       ->capture_default_str();
   app.add_flag("--bent", o.bent, "Also write the mean unoccluded direction");
-  app.add_option(
-      "--rings", o.rings,
-      "Also write gap fractions, the visible shares of the sky, in this many zenith rings; 5 gives "
-      "the rings of the LAI-2200 plant canopy analyser");
+  app.add_option("--rings", o.rings,
+                 "Also write gap fractions, the visible shares of the sky, in this many zenith "
+                 "rings; 5 gives the rings of the LAI-2200 plant canopy analyser")
+      ->check(of_values("0..90"));
   app.add_option("--suns", a.suns,
                  "CSV of suns: azimuth,elevation,irradiance (degrees from -Z to +X, W/m^2), or "
                  "x,y,z,irradiance with the direction towards the sun");

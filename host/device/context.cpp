@@ -128,9 +128,11 @@ cl::Program& DeviceContext::State::program(const std::string& file, const Varian
                                   [&] { result = compile(built, device, options(variant)); });
   if (result != CL_SUCCESS) {
     const auto log = built.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device);
+    std::string shortage = KernelCache::of_process().shortage();  // others fill disks, too
+    if (!shortage.empty()) shortage.insert(0, "; ");
     throw Error(ErrorKind::device,
-                fmt::format("{}: the OpenCL compiler of {} rejected it ({}):\n{}", file, info.name,
-                            opencl_error_name(result), first_lines(log, 12)));
+                fmt::format("{}: the OpenCL compiler of {} rejected it ({}{}):\n{}", file,
+                            info.name, opencl_error_name(result), shortage, first_lines(log, 12)));
   }
   known_programs.push_back(known);
   return programs.emplace(key, built).first->second;

@@ -78,12 +78,46 @@ TEST_F(OptionValues, AreNumbersWhereNumbersAreExpectedAndNeverNaN) {
   EXPECT_EQ(files_in_folder(), 0u);
 }
 
+/// What a command needs beside an option.
+std::string needs_of(const std::string& command, const std::string& flag) {
+  if (flag == "--max-spp") return " --target-rmse 0.1";
+  if (flag == "--motion-samples") return " --frame 0 --shutter 0,0.5";
+  if (flag == "--back-every") return " --passes ao,back";
+  if (command != "bake") return "";
+  if (flag == "--light-rays") return " --passes ao,light";
+  return flag == "--rays" ? "" : " --to texture";
+}
+
+TEST_F(OptionValues, OfWholeNumbersTheHelpTellsThoseThatAreTaken) {
+  for (const auto& [command, rest] : kCommands) {
+    for (const Option& option : options_in(dapple(command + " --help").out)) {
+      if (option.type != "INT") continue;
+      SCOPED_TRACE(command + " " + option.flag);
+      const std::size_t dots = option.values.find("..");
+      if (dots == std::string::npos) {
+        EXPECT_TRUE(option.values.starts_with("{")) << option.values;
+        continue;
+      }
+      const std::string low = option.values.substr(0, dots), high = option.values.substr(dots + 2);
+      for (const int value : {std::stoi(low) - 1, std::stoi(high) + 1}) {
+        const std::string others = option.flag == "--spp" ? "scene:cube -o o.exr" : rest;
+        const std::string arguments = command + " " + others + needs_of(command, option.flag) +
+                                      " " + option.flag + "=" + std::to_string(value);
+        expect_failure(dapple(arguments), 2,
+                       option.flag + " is " + std::to_string(value) + "; it must be from " + low +
+                           " to " + high);
+      }
+    }
+  }
+}
+
 TEST_F(OptionValues, OutOfRangeAreNamedAsTyped) {
   const std::pair<const char*, const char*> cases[] = {
       {"--spp 99999999999999999999",
-       "--spp 99999999999999999999: expected a whole number of at most nine digits"},
+       "--spp 99999999999999999999: expected a whole number from 1 to 1048576"},
       {"--spp -99999999999999999999",
-       "--spp -99999999999999999999: expected a whole number of at most nine digits"},
+       "--spp -99999999999999999999: expected a whole number from 1 to 1048576"},
+      {"--camera-splitting two", "--camera-splitting two: expected one of 0, 1, 2, 4"},
       {"--shard 1/99999999999", "--shard: '99999999999' is out of range"},
       {"--report-bias 200%", "--report-bias 200%: expected 0% to 100%"},
       {"--report-bias -1", "--report-bias -1: expected 0% to 100%"},

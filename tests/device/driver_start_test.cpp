@@ -70,6 +70,19 @@ TEST_F(DriverStartCold, ACacheThatCannotBeUsedIsIgnoredWithANote) {
   }
 }
 
+// By another process, at any moment: PoCL reports an error, or LLVM ends the process.
+TEST_F(DriverStartCold, ADiskThatIsFullBeforeKernelsAreCompiledIsNamed) {
+  if (!has_namespaces()) GTEST_SKIP() << "no namespaces to mount in";
+  fs::create_directory(path("cache"));
+  const std::string mount =
+      "mount -t tmpfs -o size=9m none cache && { (until ls -d cache/*/pocl; do sleep 0.01; done; "
+      "dd "
+      "if=/dev/zero of=cache/fill bs=1M) >/dev/null 2>&1 & true; }";
+  const Outcome run = render("", "POCL_CACHE_DIR='" + path("cache") + "' " + in_namespace(mount));
+  expect_failure(run, 4, " space ");
+  EXPECT_FALSE(fs::exists(path("out.exr")));
+}
+
 TEST_F(DriverStart, NoWritableFolderForKernelsIsAnError) {
   if (!has_namespaces()) GTEST_SKIP() << "no namespaces to mount in";
   // Makes /tmp read-only but keeps its content, since the program itself may be in /tmp.

@@ -20,6 +20,11 @@ std::string expected_values(const CLI::App& app, const std::string& flag, const 
   const CLI::Option* option = parsed_command(app).get_option_no_throw(flag);
   const std::string type = option ? option->get_type_name() : "";
   const bool is_whole = std::regex_match(text, std::regex("[+-]?\\d+"));
+  std::smatch values;
+  if (std::regex_match(type, values, std::regex("U?INT:(-?\\d+)\\.\\.(\\d+)")))
+    return fmt::format("a whole number from {} to {}", values[1].str(), values[2].str());
+  if (std::regex_match(type, values, std::regex("U?INT:\\{(.*)\\}")))
+    return "one of " + std::regex_replace(values[1].str(), std::regex(","), ", ");
   if (type == "UINT")
     return is_whole ? "a whole number from 0 to 4294967295" : "a whole number, 0 or more";
   if (type == "INT" && is_whole) return "a whole number of at most nine digits";
@@ -30,7 +35,7 @@ std::string expected_values(const CLI::App& app, const std::string& flag, const 
 
 bool takes_number(const CLI::Option& option) {
   const std::string type = option.get_type_name();
-  return type == "UINT" || type == "INT" || type == "FLOAT";
+  return type.starts_with("UINT") || type.starts_with("INT") || type == "FLOAT";
 }
 
 /// "--output" of "-o,--output".
@@ -101,6 +106,10 @@ std::string argument_error_text(const CLI::App& app, const CLI::ParseError& erro
       std::regex_match(what, match, std::regex("(\\S+) excludes (\\S+)")))
     return fmt::format("{} does not go with {}", long_name(match[1]), long_name(match[2]));
   return error.what();
+}
+
+CLI::Validator of_values(const std::string& values) {
+  return {[](std::string&) { return std::string(); }, values};
 }
 
 void refuse_empty_values(CLI::App& command) {

@@ -6,6 +6,7 @@
 #include <set>
 #include <sstream>
 
+#include "commands/arguments/argument_errors.hpp"
 #include "commands/arguments/option_text.hpp"
 #include "commands/arguments/shared_options.hpp"
 #include "dapple/error.hpp"
@@ -60,6 +61,7 @@ void add_value_options(CLI::App& app, BakeArguments& a) {
          "--light-rays", o.light_rays,
          "Rays per light from each sample point and side. AO decides how many sample points "
          "there are")
+      ->check(of_values("1..4096"))
       ->capture_default_str();
   app.add_option("--channel", a.channel,
                  "Where AO goes: COLOR_0.rgb, COLOR_0.r, .g, .b or .a, TEXCOORD_1.x or .y, or a "
@@ -69,12 +71,14 @@ void add_value_options(CLI::App& app, BakeArguments& a) {
   app.add_option("--bent-channel", a.bent_channel, "Where bent normals go: _BENT_NORMAL or NORMAL")
       ->capture_default_str();
   app.add_option("--size", o.texture_size, "Width and height of the texture")
+      ->check(of_values("1..16384"))
       ->capture_default_str();
   app.add_option("--bits", a.bits, "Bits per texel of the occlusion texture: 8 or 16")
       ->check(CLI::IsMember({8, 16}))
       ->capture_default_str();
   app.add_option("--margin", o.margin,
                  "Texels by which values are extended beyond the border of each chart (UV island)")
+      ->check(of_values("0..1024"))
       ->capture_default_str();
   app.add_option(
          "--uv", a.uv,
@@ -95,10 +99,10 @@ void add_ray_options(CLI::App& app, BakeArguments& a) {
                  "Trace rays until the standard error of each value is at most this. Lights: the "
                  "error of all together, divided by their largest irradiance without occlusion. "
                  "Default: 0.04, with at most 1024 rays");
-  app.add_option(
-      "--rays", a.rays,
-      "Number of rays per triangle (--at vertices: vertex; --to texture: texel) and side, in place "
-      "of the default --target-error. If both are given: the maximum");
+  app.add_option("--rays", a.rays,
+                 "Number of rays per triangle (--at vertices: vertex; --to texture: texel) and "
+                 "side, in place of the default --target-error. If both are given: the maximum")
+      ->check(of_values("8..65536"));
   app.add_option(
          "--at", a.at,
          "Where rays start, for --to vertex. triangles: at points all over the triangles around a "

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "commands/arguments/argument_errors.hpp"
 #include "commands/arguments/option_text.hpp"
 #include "commands/arguments/output_name.hpp"
 #include "commands/arguments/shared_options.hpp"
@@ -20,6 +21,7 @@ void add_sampling_options(CLI::App& app, RenderArguments& a) {
   app.add_option("--spp", a.spp,
                  "Camera rays per pixel. With a target this is the minimum, and each pixel gets at "
                  "least 8 samples: camera rays times --camera-splitting")
+      ->check(of_values("1..1048576"))
       ->default_str(fmt::format("{}; 1 with --target-rmse", o.spp));
   app.add_option("--target-error", o.target_error,
                  "Sample each pixel until its estimated standard error is below this; 0: no "
@@ -33,18 +35,22 @@ void add_sampling_options(CLI::App& app, RenderArguments& a) {
       ->capture_default_str();
   app.add_option("--max-spp", o.max_spp,
                  "With a target: the largest number of camera rays per pixel")
+      ->check(of_values("1..1048576"))
       ->capture_default_str();
   app.add_option(
          "--camera-splitting", o.camera_splitting,
          "Number of surfaces that each camera ray shades: 1, 2 or 4; 0: dapple chooses from "
          "the opacities of the scene. Larger values suit thin leaves and hair")
+      ->check(of_values("{0,1,2,4}"))
       ->capture_default_str();
   app.add_option(
          "--ao-rays", o.ao_rays,
          "AO rays per camera ray. The surfaces that the camera ray shades share them; each gets at "
          "least one")
+      ->check(of_values("1..4096"))
       ->capture_default_str();
   app.add_option("--light-rays", o.light_rays, "Rays per light and shaded surface")
+      ->check(of_values("1..4096"))
       ->capture_default_str();
   add_prefiltering_options(app, a.estimator, o.footprint, a.report_bias)
       ->each([&a](const std::string&) { a.footprint_given = true; });
@@ -73,6 +79,7 @@ void add_layer_options(CLI::App& app, RenderArguments& a) {
                  "With --passes back: one in so many samples is traced on that side, too: 1, 2, 4, "
                  "8, 16, 32 or 64. With 1 these layers have as little noise as those in front, and "
                  "a render takes up to 1.7 times as long")
+      ->check(of_values("{1,2,4,8,16,32,64}"))
       ->capture_default_str();
   app.add_option(
       "--ambient", o.ambient,
@@ -91,8 +98,12 @@ void add_layer_options(CLI::App& app, RenderArguments& a) {
 
 void add_picture_options(CLI::App& app, RenderArguments& a) {
   RenderOptions& o = a.options;
-  app.add_option("--width", o.width, "Image width, pixels")->capture_default_str();
-  app.add_option("--height", o.height, "Image height, pixels")->capture_default_str();
+  app.add_option("--width", o.width, "Image width, pixels")
+      ->check(of_values("1..65535"))
+      ->capture_default_str();
+  app.add_option("--height", o.height, "Image height, pixels")
+      ->check(of_values("1..65535"))
+      ->capture_default_str();
   app.add_option("--crop", a.crop,
                  "Only this part: X0,Y0,X1,Y1, pixels from the top left, both ends included");
   add_sampling_options(app, a);
@@ -176,6 +187,7 @@ void add_motion_options(CLI::App& app, RenderArguments& a) {
   app.add_option("--motion-samples", a.motion_samples,
                  "Number of times at which the shutter is sampled; --spp is divided among them. "
                  "Default: 8, at most --spp")
+      ->check(of_values("1..1024"))
       ->needs(&shutter);
   app.add_option("--animation", a.scene_options.animation,
                  "The glTF animation that plays, by name; *: all at once; default: the first. "

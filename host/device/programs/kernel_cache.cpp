@@ -90,6 +90,11 @@ bool KernelCache::use(const fs::path& parent) {
 
 fs::path KernelCache::folder() const { return private_ ? private_->path() / "pocl" : fs::path(); }
 
+std::string KernelCache::shortage() const {
+  const std::string reason = private_ ? refusal(private_->path()) : "";
+  return reason.empty() ? "" : fmt::format("{}: {}", private_->path().string(), reason);
+}
+
 KernelCache::Files KernelCache::program_folders() const {
   Files found;
   std::error_code ignored;

@@ -27,6 +27,8 @@ class KernelCache {
 
   /// The value of POCL_CACHE_DIR for PoCL; empty when no folder can be written.
   [[nodiscard]] std::filesystem::path folder() const;
+  /// "/tmp/x: no space left ...", of folder(), where compiling now would fail; else empty.
+  [[nodiscard]] std::string shortage() const;
   /// Which folders could not be used and why, "/root/.cache/dapple: Read-only file system"; empty
   /// when the first one could.
   [[nodiscard]] const std::string& refusals() const { return refusals_; }

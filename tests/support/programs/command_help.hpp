@@ -10,8 +10,9 @@
 namespace dapple::program_test {
 
 struct Option {
-  std::string flag;  ///< "--spp"
-  std::string type;  ///< of its value: "TEXT", "FLOAT", "INT" or "UINT"; empty: it takes none
+  std::string flag;    ///< "--spp"
+  std::string type;    ///< of its value: "TEXT", "FLOAT", "INT" or "UINT"; empty: it takes none
+  std::string values;  ///< "1..100" or "{1,2}"; empty: not said
 };
 
 /// From lines such as "  -o,--output TEXT REQUIRED   OpenEXR file to write". Without --help.
@@ -25,7 +26,9 @@ inline std::vector<Option> options_in(const std::string& help) {
     std::istringstream words(line.substr(dashes));
     Option option;
     words >> option.flag >> option.type;
-    option.type = option.type.substr(0, option.type.find_first_of("=:"));
+    const std::string type = option.type.substr(0, option.type.find('='));
+    option.type = type.substr(0, type.find(':'));
+    if (option.type != type) option.values = type.substr(option.type.size() + 1);
     if (!types.contains(option.type)) option.type.clear();
     if (option.flag != "--help") options.push_back(option);
   }
