@@ -59,7 +59,7 @@ void measure_once(const Scene& scene, PrefilterCostRow& row) {
   const double before = status_bytes("VmRSS");
   BuiltObject built;
   const auto [building, build_peak] =
-      cost_of([&] { built = build_object(scene, scene.meshes[0]); });
+      cost_of([&] { built = build_object(scene, OpaqueTexels(scene), scene.meshes[0]); });
   const auto [prefiltering, prefilter_peak] =
       cost_of([&] { prefilter(built, TextureIntegrals(scene, built.object.textured)); });
   const ObjectBvh& object = built.object;

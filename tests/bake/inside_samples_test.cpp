@@ -82,7 +82,9 @@ TEST(ClosedParts, AreBoxesAndTubesAndNotSheets) {
 TEST(ClosedParts, AreOpaque) {
   Mesh box = box_mesh({0, 0, 0}, {1, 1, 1});
   Scene scene = scene_of(box);
-  const auto count = [&] { return closed_parts(box, opaque_triangles(scene, box)).count; };
+  const auto count = [&] {
+    return closed_parts(box, opaque_triangles(scene, OpaqueTexels(scene), box)).count;
+  };
   EXPECT_EQ(count(), 1u);
   scene.materials[0].alpha_mode = AlphaMode::blend;
   EXPECT_EQ(count(), 1u) << "its alpha is 1";
@@ -91,9 +93,14 @@ TEST(ClosedParts, AreOpaque) {
   scene.materials[0].alpha_mode = AlphaMode::mask;
   EXPECT_EQ(count(), 1u);
   scene.materials[0].alpha_texture = 0;
+  scene.textures.resize(1);
+  scene.textures[0].width = scene.textures[0].height = 1;
+  scene.textures[0].alpha = {0};
   EXPECT_EQ(count(), 1u) << "without texture coordinates";
-  box.uvs.resize(box.positions.size());
+  box.uvs.assign(box.positions.size(), V2f(0, 0));
   EXPECT_EQ(count(), 0u);
+  scene.textures[0].alpha = {255};
+  EXPECT_EQ(count(), 1u);
   scene.materials[0].alpha_texture = -1;
   box.vertex_alpha.assign(box.positions.size(), 1);
   EXPECT_EQ(count(), 1u) << "COLOR_0 is opaque";

@@ -65,7 +65,7 @@ CachedObject small_object() {
     }
     mesh.materials.push_back(t % 2);
   }
-  BuiltObject built = build_object(scene, mesh);
+  BuiltObject built = build_object(scene, OpaqueTexels(scene), mesh);
   prefilter(built, TextureIntegrals(scene, built.object.textured));
   return {FinishedObject(std::move(built.object)), 1.0};
 }

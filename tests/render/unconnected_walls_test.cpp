@@ -100,6 +100,22 @@ TEST(UnconnectedWalls, QuadsAtCommonCornersAreAWall) {
   EXPECT_LE(with_kept_footprint(room_with_one_window(Parts::quads)).rmse, 1e-5);
 }
 
+// As of a house whose walls, windows and plants share a texture.
+TEST(UnconnectedWalls, WithOpaqueTexelsOfATextureThatHasOthersAreAWall) {
+  Scene scene = room_with_one_window(Parts::quads);
+  Mesh& mesh = scene.meshes[0];
+  for (const V3f& position : mesh.positions)
+    mesh.uvs.push_back(V2f(0.25f, 0.5f) + V2f(position.x, position.y + position.z) * 0.02f);
+  Texture texture;
+  texture.width = texture.height = 64;
+  for (std::uint32_t texel = 0; texel < 64 * 64; ++texel)
+    texture.alpha.push_back(texel % 64 < 32 ? 255 : 0);
+  scene.textures = {texture};
+  scene.materials[0].alpha_mode = AlphaMode::mask;
+  scene.materials[0].alpha_texture = 0;
+  EXPECT_LE(with_kept_footprint(scene).rmse, 1e-5);
+}
+
 // As files have them whose writer computed each corner's position more than once.
 TEST(UnconnectedWalls, QuadsWhoseCornersDifferByARoundingErrorAreNearlyAWall) {
   Scene scene = room_with_one_window(Parts::quads);

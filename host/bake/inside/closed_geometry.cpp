@@ -134,10 +134,11 @@ int winding(const BoxTree& tree, const std::array<V3f, 3>* triangles, const RayF
 }  // namespace
 
 ClosedGeometry::ClosedGeometry(Scene scene) {
+  const OpaqueTexels texels(scene);
   for (Mesh& mesh : scene.meshes) {
     Surface& kept = surfaces_.emplace_back();
     if (mesh.has_strands()) continue;
-    kept.opaque = opaque_triangles(scene, mesh);
+    kept.opaque = opaque_triangles(scene, texels, mesh);
     kept.mesh.positions = std::move(mesh.positions);
     kept.mesh.indices = std::move(mesh.indices);
     kept.mesh.materials = std::move(mesh.materials);

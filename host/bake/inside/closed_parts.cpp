@@ -80,10 +80,11 @@ std::vector<std::uint32_t> joined_triangles(const std::vector<Edge>& edges, std:
 
 }  // namespace
 
-std::vector<bool> opaque_triangles(const Scene& scene, const Mesh& mesh) {
+std::vector<bool> opaque_triangles(const Scene& scene, const OpaqueTexels& texels,
+                                   const Mesh& mesh) {
   std::vector<bool> opaque(mesh.primitive_count());
   for (std::uint32_t t = 0; t < opaque.size(); ++t)
-    opaque[t] = uniform_opacity(scene, mesh, t) == 1.0f;
+    opaque[t] = uniform_opacity(scene, texels, mesh, t) == 1.0f;
   return opaque;
 }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "bvh/opacity/opaque_texels.hpp"
 #include "dapple/scene.hpp"
 
 namespace dapple {
@@ -23,6 +24,7 @@ struct ClosedParts {
 ClosedParts closed_parts(const Mesh& mesh, const std::vector<bool>& opaque);
 
 /// Whether each triangle of a mesh is opaque all over.
-std::vector<bool> opaque_triangles(const Scene& scene, const Mesh& mesh);
+std::vector<bool> opaque_triangles(const Scene& scene, const OpaqueTexels& texels,
+                                   const Mesh& mesh);
 
 }  // namespace dapple

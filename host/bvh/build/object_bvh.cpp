@@ -44,7 +44,8 @@ constexpr float kTextured = -1.0f;
 
 /// Returns the opacity of each primitive, [0,1], or kTextured. Counts the primitives of each kind
 /// in `object`.
-std::vector<float> uniform_opacities(const Scene& scene, const Mesh& mesh, ObjectBvh& object) {
+std::vector<float> uniform_opacities(const Scene& scene, const OpaqueTexels& texels,
+                                     const Mesh& mesh, ObjectBvh& object) {
   std::vector<float> opacities(mesh.primitive_count());
   std::atomic<std::size_t> opaque = 0, cut_out = 0, translucent = 0;
   for_each_block(opacities.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -52,8 +53,9 @@ std::vector<float> uniform_opacities(const Scene& scene, const Mesh& mesh, Objec
     for (std::size_t t = begin; t < end; ++t) {
       const bool mask = scene.materials[mesh.materials[t]].alpha_mode == AlphaMode::mask;
       const auto index = static_cast<std::uint32_t>(t);
-      opacities[t] = mesh.has_strands() ? segment_opacity(scene, mesh, index)
-                                        : uniform_opacity(scene, mesh, index).value_or(kTextured);
+      opacities[t] = mesh.has_strands()
+                         ? segment_opacity(scene, mesh, index)
+                         : uniform_opacity(scene, texels, mesh, index).value_or(kTextured);
       if (opacities[t] != 0.0f) ++here[mask ? 1 : opacities[t] >= 1.0f ? 0 : 2];
     }
     opaque += here[0];
@@ -68,8 +70,9 @@ std::vector<float> uniform_opacities(const Scene& scene, const Mesh& mesh, Objec
 }
 
 /// Returns the opacity of each triangle, [0,1], or -(1 + index) for a textured triangle.
-std::vector<float> triangle_opacities(const Scene& scene, const Mesh& mesh, ObjectBvh& object) {
-  std::vector<float> opacities = uniform_opacities(scene, mesh, object);
+std::vector<float> triangle_opacities(const Scene& scene, const OpaqueTexels& texels,
+                                      const Mesh& mesh, ObjectBvh& object) {
+  std::vector<float> opacities = uniform_opacities(scene, texels, mesh, object);
   std::vector<std::uint32_t> textured;
   for (std::uint32_t t = 0; t < opacities.size(); ++t) {
     if (opacities[t] >= 0.0f) continue;
@@ -290,11 +293,11 @@ void build_strands(const Mesh& mesh, const std::vector<float>& opacities,
 
 }  // namespace
 
-BuiltObject build_object(const Scene& scene, const Mesh& mesh) {
+BuiltObject build_object(const Scene& scene, const OpaqueTexels& texels, const Mesh& mesh) {
   BuiltObject built;
   ObjectBvh& object = built.object;
   object.has_strands = mesh.has_strands();
-  const std::vector<float> opacities = triangle_opacities(scene, mesh, object);
+  const std::vector<float> opacities = triangle_opacities(scene, texels, mesh, object);
   if (object.triangles == 0) return built;
   // Not initialized: the page faults then happen in the threads that write the pages.
   const auto storage = std::make_unique_for_overwrite<PrimitiveBox[]>(object.triangles);

@@ -47,8 +47,8 @@ struct BuiltObject {
 };
 
 /// Builds and packs the triangles or segments of `mesh` that are not fully transparent. If there
-/// are none, the object has no nodes.
-BuiltObject build_object(const Scene& scene, const Mesh& mesh);
+/// are none, the object has no nodes. `texels`: of the scene.
+BuiltObject build_object(const Scene& scene, const OpaqueTexels& texels, const Mesh& mesh);
 
 /// Computes the opacities of the nodes and `opacity` of a packed object: bottom-up, in parallel and
 /// in time linear in the number of triangles. Fills the `record` for refitting unless it is

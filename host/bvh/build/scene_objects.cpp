@@ -49,11 +49,12 @@ void read_from_cache(const Scene& scene, const std::string& folder, std::vector<
 /// it is nullptr.
 void build_missing(const Scene& scene, std::vector<Work>& works, BvhStatistics& statistics,
                    std::vector<RefitRecord>* records) {
+  const OpaqueTexels texels(scene);
   statistics.build_seconds = for_each(works, [&](Work& work, std::size_t m) {
     if (work.is_read) return;
     if (records) (*records)[m] = {};
     const Mesh& mesh = scene.meshes[m];
-    work.built = build_object(scene, mesh);
+    work.built = build_object(scene, texels, mesh);
   });
   statistics.prefilter_seconds = for_each(works, [&](Work& work, std::size_t m) {
     if (work.is_read) return;

@@ -64,11 +64,17 @@ float texel_size(const Scene& scene, const Mesh& mesh, std::uint32_t triangle) {
   return texels > 0 ? std::sqrt(edge1.cross(edge2).length() / texels) : 0.0f;
 }
 
-std::optional<float> uniform_opacity(const Scene& scene, const Mesh& mesh, std::uint32_t triangle) {
+std::optional<float> uniform_opacity(const Scene& scene, const OpaqueTexels& texels,
+                                     const Mesh& mesh, std::uint32_t triangle) {
   const Material& material = scene.materials[mesh.materials[triangle]];
   if (material.alpha_mode == AlphaMode::opaque) return 1.0f;
-  if (has_texture(material, mesh)) return std::nullopt;
   auto alpha = vertex_alphas(material, mesh, triangle);
+  if (has_texture(material, mesh)) {
+    // Factors of a masked material's vertices may cut out what its texture does not.
+    const bool is_factor_1 = alpha == std::array<float, 3>{1, 1, 1};
+    if (material.alpha_mode == AlphaMode::mask && !is_factor_1) return std::nullopt;
+    if (!texels.cover(mesh, triangle)) return std::nullopt;
+  }
   for (float& corner : alpha) corner *= material.alpha;
   const float cutoff = cutoff_of(material);
   const float first = thresholded(alpha[0], cutoff);

@@ -9,13 +9,16 @@
 #include <vector>
 
 #include "bvh/opacity/opacity_mip_levels.hpp"
+#include "bvh/opacity/opaque_texels.hpp"
 #include "bvh/storage/textured_triangle.hpp"
 #include "dapple/scene.hpp"
 
 namespace dapple {
 
-/// Returns the opacity of the triangle, [0,1], if it is constant, else nothing.
-std::optional<float> uniform_opacity(const Scene& scene, const Mesh& mesh, std::uint32_t triangle);
+/// Returns the opacity of the triangle, [0,1], if it is constant, else nothing. `texels`: of the
+/// scene.
+std::optional<float> uniform_opacity(const Scene& scene, const OpaqueTexels& texels,
+                                     const Mesh& mesh, std::uint32_t triangle);
 
 /// The opacity of a segment, [0,1]: the mean alpha of its ends, by the material, without textures.
 float segment_opacity(const Scene& scene, const Mesh& mesh, std::uint32_t segment);

@@ -37,11 +37,12 @@ float mean_opacity(const TextureIntegrals& integrals, const TexturedTriangle& tr
 }
 
 /// The mean opacity of each triangle: what is cut out or transparent does not shine.
-std::vector<float> mean_opacities(const Scene& scene, const Mesh& mesh) {
+std::vector<float> mean_opacities(const Scene& scene, const OpaqueTexels& texels,
+                                  const Mesh& mesh) {
   std::vector<float> opacities;
   std::vector<TexturedTriangle> textured;
   for (std::uint32_t t = 0; t < mesh.primitive_count(); ++t) {
-    const std::optional<float> uniform = uniform_opacity(scene, mesh, t);
+    const std::optional<float> uniform = uniform_opacity(scene, texels, mesh, t);
     if (!uniform) textured.push_back(textured_triangle(scene, mesh, t, true));
     opacities.push_back(uniform.value_or(-1));
   }
@@ -58,7 +59,8 @@ std::vector<float> mean_opacities(const Scene& scene, const Mesh& mesh) {
 
 /// Appends the triangles of every instance that emits for `light`. Returns the area in m^2 that
 /// shines, by which they are chosen.
-double append_emitters(const Scene& scene, int light, std::vector<EmitterTriangle>& emitters) {
+double append_emitters(const Scene& scene, const OpaqueTexels& texels, int light,
+                       std::vector<EmitterTriangle>& emitters) {
   const std::size_t first = emitters.size();
   std::vector<double> areas;
   double total = 0;
@@ -66,7 +68,7 @@ double append_emitters(const Scene& scene, int light, std::vector<EmitterTriangl
     if (instance.light != light) continue;
     const Mesh& mesh = scene.meshes[instance.mesh];
     if (mesh.has_strands()) continue;
-    const std::vector<float> opacities = mean_opacities(scene, mesh);
+    const std::vector<float> opacities = mean_opacities(scene, texels, mesh);
     for (std::size_t t = 0; t < mesh.primitive_count(); ++t) {
       const auto corner = [&](int c) {
         return mesh.positions[mesh.indices[3 * t + c]] * instance.to_world;
@@ -142,6 +144,7 @@ uint kind_of(LightKind kind) {
 
 void pack_lights(const Scene& scene, std::vector<LightRecord>& records,
                  std::vector<EmitterTriangle>& emitters) {
+  const OpaqueTexels texels(scene);
   int next_sequence = 0;
   for (std::size_t index = 0; index < scene.lights.size(); ++index) {
     const Light& light = scene.lights[index];
@@ -163,7 +166,8 @@ void pack_lights(const Scene& scene, std::vector<LightRecord>& records,
     if (light.kind == LightKind::mesh) {
       record.id = static_cast<uint>(index + 1);
       record.first_triangle = static_cast<uint>(emitters.size());
-      record.area = static_cast<float>(append_emitters(scene, static_cast<int>(index), emitters));
+      record.area =
+          static_cast<float>(append_emitters(scene, texels, static_cast<int>(index), emitters));
       record.triangle_count = static_cast<uint>(emitters.size()) - record.first_triangle;
     }
     records.push_back(record);

@@ -183,7 +183,7 @@ class Walk {
 };
 
 ObjectBvh expect_well_formed(const Scene& scene) {
-  const ObjectBvh object = build_object(scene, scene.meshes[0]).object;
+  const ObjectBvh object = build_object(scene, OpaqueTexels(scene), scene.meshes[0]).object;
   EXPECT_EQ(object.triangles, scene.meshes[0].primitive_count());
   Walk walk(scene.meshes[0], object);
   walk.run();
@@ -257,7 +257,7 @@ TEST(Bvh, NodesAndBlocksAreFewerThanHalfTheTriangles) {
   for (const std::size_t count : {3000, 10000, 30000, 100000}) {
     const float spacing = 2 / std::cbrt(static_cast<float>(count));
     const Scene scene = scene_of(random_triangles(count, 0.2f * spacing));
-    const ObjectBvh object = build_object(scene, scene.meshes[0]).object;
+    const ObjectBvh object = build_object(scene, OpaqueTexels(scene), scene.meshes[0]).object;
     EXPECT_LT(2 * object.nodes.size(), count);
     EXPECT_LT(2 * object.blocks.size(), count);
   }
@@ -272,7 +272,7 @@ TEST(Bvh, FullyTransparentTrianglesAreDropped) {
   scene.materials.push_back(clear);
   scene.materials.push_back(below_cutoff);
   for (std::uint32_t t = 0; t < 300; ++t) scene.meshes[0].materials[t] = t % 3;
-  const ObjectBvh object = build_object(scene, scene.meshes[0]).object;
+  const ObjectBvh object = build_object(scene, OpaqueTexels(scene), scene.meshes[0]).object;
   EXPECT_EQ(object.triangles, 100u);
   EXPECT_EQ(object.translucent, 100u);
   Walk walk(scene.meshes[0], object);

@@ -57,7 +57,7 @@ Scene scene_of(Mesh mesh) {
 }
 
 NodeOpacity opacity_of(const Scene& scene) {
-  BuiltObject built = build_object(scene, scene.meshes[0]);
+  BuiltObject built = build_object(scene, OpaqueTexels(scene), scene.meshes[0]);
   prefilter(built, TextureIntegrals(scene, built.object.textured));
   return built.object.opacity;
 }

@@ -373,7 +373,7 @@ TEST(CoverageMap, ATexturedCardsMeanIsItsTexturesMean) {
     for (const AlphaMode mode : {AlphaMode::blend, AlphaMode::mask}) {
       const float alpha = mode == AlphaMode::blend ? 0.6f : 1.0f;
       const Scene scene = card_scene(texture, mode, alpha);
-      BuiltObject built = build_object(scene, scene.meshes[0]);
+      BuiltObject built = build_object(scene, OpaqueTexels(scene), scene.meshes[0]);
       prefilter(built, TextureIntegrals(scene, built.object.textured));
       const ObjectBvh& object = built.object;
       const double truth = alpha * texture_mean(texture, mode == AlphaMode::mask ? 0.5f : -1.0f);

@@ -16,7 +16,7 @@ namespace {
 /// without building its BVH: the minimum of several runs.
 double prefilter_seconds(int leaves) {
   const Scene scene = make_procedural("scene:cloud?leaves=" + std::to_string(leaves));
-  BuiltObject built = build_object(scene, scene.meshes[0]);
+  BuiltObject built = build_object(scene, OpaqueTexels(scene), scene.meshes[0]);
   const TextureIntegrals integrals(scene, built.object.textured);
   double min = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 5; ++i) {

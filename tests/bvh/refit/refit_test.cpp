@@ -360,7 +360,7 @@ double bytes_in(const std::vector<T>& values) {
 
 TEST(Refit, RecordsTakeLessThanTwentyBytesPerTriangle) {
   const Scene scene = tree(50000);
-  BuiltObject built = build_object(scene, scene.meshes[0]);
+  BuiltObject built = build_object(scene, OpaqueTexels(scene), scene.meshes[0]);
   RefitRecord record;
   prefilter(built, TextureIntegrals(scene, built.object.textured), &record);
   const double bytes = bytes_in(record.triangles) + bytes_in(record.closed) +

@@ -15,7 +15,7 @@ TEST(ObjectValidation, SummariesThatCannotBePlacedAreNotSound) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   const Scene scene = make_procedural("scene:cloud?leaves=100");
-  const FinishedObject good(build_object(scene, scene.meshes[0]).object);
+  const FinishedObject good(build_object(scene, OpaqueTexels(scene), scene.meshes[0]).object);
   EXPECT_TRUE(is_sound(good, scene));
   const std::vector<std::function<void(ObjectSummary&)>> edits = {
       [](ObjectSummary& o) { o.box.max.y = kInfinity; },

@@ -96,7 +96,7 @@ Box3f walk(const ObjectBvh& object, std::uint32_t index, std::size_t& count) {
 
 TEST(Strands, EverySegmentIsInOneLaneInsideItsBoxes) {
   const Scene scene = strand_scene(curly_strands({}), 0.3f);
-  const ObjectBvh object = build_object(scene, scene.meshes[0]).object;
+  const ObjectBvh object = build_object(scene, OpaqueTexels(scene), scene.meshes[0]).object;
   std::size_t count = 0;
   EXPECT_EQ(walk(object, 0, count), object.box);
   EXPECT_EQ(count, scene.meshes[0].primitive_count());
