@@ -109,6 +109,18 @@ void append_digits(double value, std::string& text) {
     fmt::format_to(out, "{}", value);
 }
 
+/// The names in a comment before rows of `columns` fields, as numpy.savetxt() writes them; empty if
+/// it has none that dapple reads.
+std::vector<std::string> names_in(std::string_view comment, std::size_t columns) {
+  comment.remove_prefix(std::min(comment.find_first_not_of("# "), comment.size()));
+  if (comment.find('"') != std::string_view::npos) return {};
+  const std::vector<std::string_view> cells = cells_of(comment, comment);
+  const bool is_known =
+      std::ranges::count(cells, "x") == 1 || std::ranges::count(cells, "azimuth") == 1;
+  if (!is_known || cells.size() != columns) return {};
+  return {cells.begin(), cells.end()};
+}
+
 }  // namespace
 
 NumberTable read_csv(const std::string& path) {
@@ -118,11 +130,16 @@ NumberTable read_csv(const std::string& path) {
   // Files of old Macs end lines with carriage returns alone.
   const char line_end = text.find('\n') == std::string_view::npos ? '\r' : '\n';
   NumberTable table;
+  std::string_view comment;
   for (std::size_t number = 1; !text.empty(); ++number) {
     const std::size_t end = std::min(text.find(line_end), text.size());
     const std::string_view line = text.substr(0, end);
     text.remove_prefix(std::min(end + 1, text.size()));
-    if (line.find_first_not_of(" \t\r") == std::string_view::npos || line.front() == '#') continue;
+    if (line.find_first_not_of(" \t\r") == std::string_view::npos) continue;
+    if (line.front() == '#') {
+      comment = line;
+      continue;
+    }
     const std::string unquoted = without_quoted(path, number, line);
     check_separators(path, number, unquoted);
     const std::vector<std::string_view> cells = cells_of(line, unquoted);
@@ -135,6 +152,7 @@ NumberTable read_csv(const std::string& path) {
         for (const std::string_view name : cells) table.names.push_back(text_of(name));
         continue;
       }
+      table.names = names_in(comment, table.columns);
     }
     if (cells.size() != table.columns)
       throw Error(ErrorKind::input, fmt::format("{}: line {} has {} columns, the first one has {}",

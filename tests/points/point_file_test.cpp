@@ -266,6 +266,20 @@ TEST_F(PointFile, NamesAloneAndArraysWithoutRowsHaveANote) {
     EXPECT_EQ(read_points(file).notes, std::vector<std::string>{file + ": no points"});
 }
 
+TEST_F(PointFile, NamesMayBeInTheCommentBeforeTheRows) {
+  for (const char* text : {"# written by me\n# z,y,x,plot\n3,2,1,7\n", "#z y x plot\n3 2 1 7\n"}) {
+    const PointList list = read_points(write("a.csv", text));
+    ASSERT_EQ(list.points.size(), 1u);
+    EXPECT_EQ(list.points[0], V3f(1, 2, 3)) << text;
+    ASSERT_EQ(list.extra.size(), 1u);
+    EXPECT_EQ(list.extra[0].name, "plot");
+  }
+  // Other comments name nothing.
+  for (const char* text :
+       {"# z,y,x\n# no names\n1,2,3\n", "# z,y,x,w\n1,2,3\n", "# a,b,c\n1,2,3\n"})
+    EXPECT_EQ(read_points(write("b.csv", text)).points[0], V3f(1, 2, 3)) << text;
+}
+
 TEST_F(PointFile, ErrorsOfColumnsNameThoseThatAreThere) {
   expect_error(write("a.csv", "X,Y,Z [m]\n1,2,3\n"),
                "(and nx, ny, nz); it has X, Y, Z [m]; names are lower case, without units");
