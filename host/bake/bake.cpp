@@ -276,6 +276,18 @@ bool bake_all_instances(const Scene& scene, const BakeOptions& options,
 }
 
 /// Says how many values have a larger error than the target, where these are not very few.
+/// Meshes that get no values. `vanished`: these count, too.
+void note_left_out(const Scene& scene, bool vanished, std::vector<std::string>& notes) {
+  const auto note = [&](std::ptrdiff_t count, const char* which) {
+    if (count > 0)
+      notes.push_back(fmt::format("{} mesh{} {}: not baked", count, count == 1 ? "" : "es", which));
+  };
+  note(std::ranges::count_if(scene.meshes, &Mesh::has_strands), "of strands");
+  if (!vanished)
+    note(static_cast<std::ptrdiff_t>(count_vanished_meshes(scene)),
+         "without an instance whose matrix can be inverted");
+}
+
 void add_target_notes(const BakeOptions& asked, BakeStatistics& s) {
   const auto add = [&](const TargetStatistics& counts, const char* of) {
     const auto all = static_cast<double>(counts.values);
@@ -338,11 +350,7 @@ BakeResult bake(const Scene& scene, const BakeOptions& asked, const RenderContro
   } else {
     s.notes = scene.warnings;
   }
-  const std::size_t vanished = alone || options.instances ? 0 : count_vanished_meshes(scene);
-  if (vanished > 0)
-    s.notes.push_back(
-        fmt::format("{} mesh{} without an instance whose matrix can be inverted: not baked",
-                    vanished, vanished == 1 ? "" : "es"));
+  note_left_out(scene, alone || options.instances, s.notes);
   BakeProgress progress(expected_samples(scene, options), control);
   Settings settings = bake_settings(scene, asked, occluders);
   if (together) settings.emplace_back("device", s.device);

@@ -79,10 +79,14 @@ PointList triangle_points(const Scene& scene) {
                             sides, kMaxPoints));
   PointList list;
   std::vector<double> instances, materials, side_numbers, areas;
+  std::size_t of_strands = 0;
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const Instance& instance = scene.instances[i];
     const Mesh& mesh = scene.meshes[instance.mesh];
-    if (mesh.has_strands()) continue;
+    if (mesh.has_strands()) {
+      ++of_strands;
+      continue;
+    }
     // A mirrored instance reverses the winding of its triangles. The front stays the front, as glTF
     // defines it. In doubles, because a product of three small scales vanishes in floats.
     const float front = Imath::M44d(instance.to_world).determinant() < 0 ? -1.0f : 1.0f;
@@ -103,6 +107,9 @@ PointList triangle_points(const Scene& scene) {
       }
     }
   }
+  if (of_strands > 0)
+    list.notes.push_back(fmt::format("{} placed mesh{} of strands: no points on {}", of_strands,
+                                     of_strands == 1 ? "" : "es", of_strands == 1 ? "it" : "them"));
   list.extra = {{"instance", std::move(instances)},
                 {"material", std::move(materials)},
                 {"side", std::move(side_numbers)},

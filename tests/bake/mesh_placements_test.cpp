@@ -83,6 +83,15 @@ TEST(MeshPlacements, BentNormalsOfLargeAndSmallOnesCountTheSame) {
   for (const V3f& bent : baked.meshes.at(0).bent) EXPECT_NEAR(bent.x, 0, 0.03);
 }
 
+TEST(MeshPlacements, StrandsAreNotBakedAndTold) {
+  BakeOptions options;
+  options.target_error = 0;
+  options.rays = 8;
+  const BakeResult baked = bake(make_procedural("scene:hair?strands=20"), options);
+  const std::vector<std::string>& notes = baked.statistics.notes;
+  EXPECT_EQ(std::count(notes.begin(), notes.end(), "1 mesh of strands: not baked"), 1);
+}
+
 TEST(MeshPlacements, MeshesThatAreAlwaysScaledToZeroAreNotBakedAndTold) {
   Scene scene = plane_under_disk(0);
   const std::size_t mesh = scene.meshes.size() - 1;

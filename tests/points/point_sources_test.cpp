@@ -105,6 +105,14 @@ TEST(PointSources, PointsOfLargeTrianglesNearTheOriginLieAboveThem) {
   }
 }
 
+TEST(PointSources, StrandsHaveNoPointsAndThatIsNoted) {
+  const Scene scene = make_procedural("scene:hair?strands=10");
+  const PointList list = triangle_points(scene);
+  EXPECT_FALSE(list.points.empty()) << "of the head";
+  EXPECT_EQ(list.notes, std::vector<std::string>{"1 placed mesh of strands: no points on it"});
+  EXPECT_TRUE(triangle_points(make_procedural("scene:cube")).notes.empty());
+}
+
 TEST(PointSources, TooManySidesAreAnError) {
   Scene scene = triangle_placed_by(M44f());
   scene.meshes[0].indices.resize(3'000'000);
