@@ -1,5 +1,5 @@
-// Options of sequences: where a lens focuses without a distance of its own, and other noise in each
-// frame.
+// Options of sequences: where a lens focuses without a distance of its own, other noise in each
+// frame, and the footprint.
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
 #include <ImfStringAttribute.h>
@@ -9,11 +9,13 @@
 
 #include "dapple/film.hpp"
 #include "support/files/gltf_builder.hpp"
+#include "support/files/gltf_data.hpp"
 #include "support/programs/program_run.hpp"
 
 namespace dapple {
 namespace {
 
+using namespace film_test;
 using namespace program_test;
 
 class FramesOptions : public ProgramRun {
@@ -35,6 +37,29 @@ class FramesOptions : public ProgramRun {
         .write(reinterpret_cast<const char*>(bytes.data()),
                static_cast<std::streamsize>(bytes.size()));
   }
+  /// Writes dive.glb: grass whose camera is high above it until 1 s, and then on the ground.
+  void write_dive() const {
+    ASSERT_EQ(dapple("scene 'grass?leaves=4000&length=5' -o grass.glb").code, 0);
+    const std::string bytes = bytes_of(path("grass.glb"));
+    test::GltfBuilder b;
+    b.doc = test::GltfData(path("grass.glb")).doc;
+    const std::size_t size = b.doc["buffers"][0]["byteLength"];
+    b.bin.assign(bytes.end() - static_cast<std::ptrdiff_t>(size), bytes.end());
+    b.doc.erase("buffers");
+    const int times = b.add_accessor(std::vector<float>{0, 1}, test::kFloat, "SCALAR");
+    const int values = b.add_positions({0, 1000, 0, 0, 0, 0});
+    const std::size_t camera = 2;  // the last node
+    ASSERT_TRUE(b.doc["nodes"][camera].contains("camera"));
+    const int above = b.add("nodes", {{"children", {camera}}});
+    b.doc["scenes"][0]["nodes"] = {0, 1, above};
+    b.add(
+        "animations",
+        {{"samplers", {{{"input", times}, {"output", values}, {"interpolation", "STEP"}}}},
+         {"channels", {{{"sampler", 0}, {"target", {{"node", above}, {"path", "translation"}}}}}}});
+    const auto glb = b.glb();
+    std::ofstream(path("dive.glb"), std::ios::binary)
+        .write(reinterpret_cast<const char*>(glb.data()), static_cast<std::streamsize>(glb.size()));
+  }
   [[nodiscard]] float focus_distance(const char* name) const {
     const Imf::InputFile file(path(name).c_str());
     const auto& header = file.header();
@@ -50,6 +75,20 @@ TEST_F(FramesOptions, ASequenceKeepsTheFocusOfItsFirstFrame) {
             0);
   EXPECT_GT(focus_distance("a.0.exr"), 1);
   EXPECT_EQ(focus_distance("a.0.exr"), focus_distance("a.1.exr"));
+}
+
+TEST_F(FramesOptions, AFirstFrameThatShowsNothingLeavesTheFootprintToTheNext) {
+  write_dive();
+  const Outcome run = dapple(
+      "render dive.glb --width 64 --height 64 --spp 16 --passes ao --max-bias 0.0001 --frames 0-2 "
+      "--fps 1 -q -o a.#.exr --stats-json a.#.json");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const auto footprint = [&](const char* frame) {
+    return test::json::parse(bytes_of(path(frame))).at("footprint").get<double>();
+  };
+  EXPECT_EQ(footprint("a.0.json"), 4);
+  EXPECT_LT(footprint("a.1.json"), 4);
+  EXPECT_EQ(footprint("a.2.json"), footprint("a.1.json"));
 }
 
 TEST_F(FramesOptions, FramesHaveTheSameNoiseUnlessTheSeedIsAnimated) {
