@@ -5,7 +5,7 @@
 
 #include "bvh/build/quantize_boxes.hpp"
 #include "bvh/opacity/strand_coverage.hpp"
-#include "bvh/opacity/triangle_opacity.hpp"
+#include "bvh/opacity/texture_integrals.hpp"
 
 namespace dapple::bench {
 namespace {
@@ -132,7 +132,7 @@ class Composer {
   float mean_opacity(const LeafTriangle& triangle) const {
     if (triangle.opacity >= 0.0f) return triangle.opacity;
     const auto index = static_cast<std::size_t>(-triangle.opacity - 1.0f);
-    return integrals_.mean(bvh_.textured[index], 1.0f / 3.0f, 1.0f / 3.0f, 1.0f);
+    return integrals_.of(bvh_.textured[index]).mean(1.0f / 3.0f, 1.0f / 3.0f, 1.0f);
   }
 
   const SceneBvh& bvh_;

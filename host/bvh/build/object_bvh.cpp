@@ -17,6 +17,7 @@
 #include "bvh/build/coincident_triangles.hpp"
 #include "bvh/build/quantize_boxes.hpp"
 #include "bvh/opacity/closed_surface.hpp"
+#include "bvh/opacity/triangle_opacity.hpp"
 #include "bvh/opacity/wall.hpp"
 #include "bvh/opacity/welded_vertices.hpp"
 #include "bvh/storage/packed_strands.hpp"

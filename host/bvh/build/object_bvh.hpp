@@ -7,7 +7,8 @@
 #include "bvh/build/wide_tree.hpp"
 #include "bvh/opacity/coverage_map.hpp"
 #include "bvh/opacity/node_opacity.hpp"
-#include "bvh/opacity/triangle_opacity.hpp"
+#include "bvh/opacity/opaque_texels.hpp"
+#include "bvh/opacity/texture_integrals.hpp"
 #include "bvh/storage/large_pages.hpp"
 #include "dapple/shared/geometry.h"
 

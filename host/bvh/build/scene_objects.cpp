@@ -56,11 +56,12 @@ void build_missing(const Scene& scene, std::vector<Work>& works, BvhStatistics& 
     const Mesh& mesh = scene.meshes[m];
     work.built = build_object(scene, texels, mesh);
   });
+  SharedMipLevels mip_levels(scene);
   statistics.prefilter_seconds = for_each(works, [&](Work& work, std::size_t m) {
     if (work.is_read) return;
     ObjectBvh& object = work.built.object;
     if (!object.nodes.empty()) {
-      prefilter(work.built, TextureIntegrals(scene, object.textured),
+      prefilter(work.built, TextureIntegrals(scene, object.textured, mip_levels),
                 records && !object.has_strands ? &(*records)[m] : nullptr);
     }
     work.finished.object = FinishedObject(std::move(object));

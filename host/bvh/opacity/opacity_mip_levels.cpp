@@ -9,6 +9,7 @@ namespace dapple {
 namespace {
 
 int wrap(int cell, int size, Wrap mode) {
+  if (cell >= 0 && cell < size) return cell;
   if (mode == Wrap::clamp) return std::clamp(cell, 0, size - 1);
   const int period = mode == Wrap::mirror ? 2 * size : size;
   int r = cell % period;
@@ -16,9 +17,16 @@ int wrap(int cell, int size, Wrap mode) {
   return r < size ? r : period - 1 - r;
 }
 
+/// The largest whole number that is not above `x`, which has fewer digits than an int.
+int floored(float x) {
+  const int toward_zero = static_cast<int>(x);
+  return toward_zero - (x < static_cast<float>(toward_zero) ? 1 : 0);
+}
+
 /// Returns an equivalent texture coordinate near [0,1), so that the index of its texel fits in an
 /// int.
 float folded_coordinate(float u, Wrap mode) {
+  if (u >= 0 && u < 1) return u;
   return mode == Wrap::clamp ? std::clamp(u, -1.0f, 2.0f) : u - 2.0f * std::floor(0.5f * u);
 }
 
@@ -93,20 +101,20 @@ OpacityMipLevels::OpacityMipLevels(const Texture& texture, float factor, float c
 float OpacityMipLevels::bilinear(const Level& level, V2f uv) const {
   const float x = uv.x * static_cast<float>(level.width) - 0.5f;
   const float y = uv.y * static_cast<float>(level.height) - 0.5f;
-  const float left = std::floor(x), top = std::floor(y);
-  const float fx = x - left, fy = y - top;
-  const auto at = [&](float i, float j) {
-    const int column = wrap(static_cast<int>(i), level.width, wrap_s_);
-    const int row = wrap(static_cast<int>(j), level.height, wrap_t_);
-    return level.opacity[static_cast<std::size_t>(row) * level.width + column];
+  const int left = floored(x), top = floored(y);
+  const float fx = x - static_cast<float>(left), fy = y - static_cast<float>(top);
+  const int columns[2] = {wrap(left, level.width, wrap_s_), wrap(left + 1, level.width, wrap_s_)};
+  const auto of_row = [&](int row) {
+    const float* const texels =
+        &level.opacity[static_cast<std::size_t>(wrap(row, level.height, wrap_t_)) * level.width];
+    return texels[columns[0]] * (1 - fx) + texels[columns[1]] * fx;
   };
-  const float upper = at(left, top) * (1 - fx) + at(left + 1, top) * fx;
-  const float lower = at(left, top + 1) * (1 - fx) + at(left + 1, top + 1) * fx;
-  return upper * (1 - fy) + lower * fy;
+  return of_row(top) * (1 - fy) + of_row(top + 1) * fy;
 }
 
 float OpacityMipLevels::mean(V2f uv, float width_texels) const {
   const V2f at(folded_coordinate(uv.x, wrap_s_), folded_coordinate(uv.y, wrap_t_));
+  if (width_texels <= 1) return bilinear(levels_[0], at);
   const float level = std::clamp(std::log2(std::max(width_texels, 1.0f)), 0.0f,
                                  static_cast<float>(levels_.size() - 1));
   const auto fine = static_cast<std::size_t>(level);

@@ -4,7 +4,10 @@
 
 #include <tbb/parallel_for.h>
 
+#include <array>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "bvh/opacity/quantize_opacity.hpp"
 #include "bvh/opacity/strand_coverage.hpp"
@@ -36,6 +39,36 @@ struct Leaf {
     return {storage.data() + (facing ? static_cast<std::size_t>(axis) * drawn : 0), drawn};
   }
   [[nodiscard]] Covering covering() const { return {along(0), along(1), along(2)}; }
+};
+
+TriangleIntegral integral_of(const CoveringTriangle& triangle,
+                             std::span<const TexturedTriangle> textured,
+                             const TextureIntegrals& integrals) {
+  return integrals.of(textured[static_cast<std::size_t>(-triangle.opacity - 1.0f)]);
+}
+
+/// The integrals of a leaf's textured triangles.
+class LeafTextures {
+ public:
+  LeafTextures(const Leaf& leaf, std::span<const TexturedTriangle> textured,
+               const TextureIntegrals& integrals) {
+    if (!leaf.textured) return;
+    for (const CoveringTriangle& triangle : leaf.along(0))
+      if (triangle.opacity < 0)
+        found_[count_++].emplace(triangle.opacity, integral_of(triangle, textured, integrals));
+  }
+
+  /// Of a textured triangle of the leaf.
+  [[nodiscard]] const TriangleIntegral& of(const CoveringTriangle& triangle) const {
+    std::size_t i = 0;
+    while (found_[i]->first != triangle.opacity) ++i;
+    return found_[i]->second;
+  }
+
+ private:
+  /// With the triangles' codes.
+  std::array<std::optional<std::pair<float, TriangleIntegral>>, kMaxInLeaf> found_;
+  std::size_t count_ = 0;
 };
 
 /// Sums over what is seen along the axes, weighted by occluding area.
@@ -194,8 +227,9 @@ class Prefilter {
       return leaf;
     }
     CoverageMap map;
+    const LeafTextures textures(leaf, object_.textured, integrals_);
     cover(map, box, leaf.covering(), [&](const CoveringTriangle& t, float u, float v, float share) {
-      return mean_opacity(t, u, v, share);
+      return textures.of(t).mean(u, v, share);
     });
     coverage.add(map, box, leaf.areas);
     NodeOpacity opacity = map_opacity(map, leaf.normals, box);
@@ -235,9 +269,10 @@ class Prefilter {
                                       edge_of(block, 2, lane), block.opacity[lane],
                                       has_bit(object_.closed, bvh_block(node.prim_base, i), lane)};
       leaf.textured |= triangle.opacity < 0.0f;
-      const float opacity = triangle.opacity >= 0.0f
-                                ? triangle.opacity
-                                : mean_opacity(triangle, 1.0f / 3, 1.0f / 3, 1.0f);
+      const float opacity =
+          triangle.opacity >= 0.0f
+              ? triangle.opacity
+              : integral_of(triangle, object_.textured, integrals_).mean(1.0f / 3, 1.0f / 3, 1.0f);
       const V3f area = 0.5f * triangle.edge1.cross(triangle.edge2);
       leaf.normals.add(area, opacity);
       leaf.areas.add(area, opacity, triangle.closed);
@@ -258,11 +293,6 @@ class Prefilter {
   float chord(std::uint32_t block, unsigned lane) const {
     return object_.interior.empty() ? 0.0f
                                     : object_.interior[8 * (block - object_.first_block) + lane];
-  }
-
-  float mean_opacity(const CoveringTriangle& triangle, float u, float v, float share) const {
-    const auto textured = static_cast<std::size_t>(-triangle.opacity - 1.0f);
-    return integrals_.mean(object_.textured[textured], u, v, share);
   }
 
   const PrefilterTask& task_;
@@ -290,7 +320,7 @@ void start_record(BuiltObject& built, const TextureIntegrals& integrals, RefitRe
   record.triangles = built.object.primitives;
   record.closed = built.closed;
   for (const TexturedTriangle& triangle : built.object.textured)
-    record.textured_opacity.push_back(integrals.mean(triangle, 1.0f / 3, 1.0f / 3, 1.0f));
+    record.textured_opacity.push_back(integrals.of(triangle).mean(1.0f / 3, 1.0f / 3, 1.0f));
   record.nodes.resize(built.object.nodes.size());
   cut_subtrees(built.tree, record);
 }

@@ -5,8 +5,6 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
-#include <span>
-#include <vector>
 
 #include "bvh/opacity/opacity_mip_levels.hpp"
 #include "bvh/opacity/opaque_texels.hpp"
@@ -41,29 +39,5 @@ float cutoff_of(const Material& material);
 /// the index of the material is above the maximum of the records.
 TexturedTriangle textured_triangle(const Scene& scene, const Mesh& mesh, std::uint32_t triangle,
                                    bool averaged);
-
-/// Mean opacities of parts of textured triangles.
-class TextureIntegrals {
- public:
-  /// Makes the mip levels that the `textured` triangles need, each once. `scene` must outlive
-  /// this object.
-  TextureIntegrals(const Scene& scene, std::span<const TexturedTriangle> textured);
-
-  /// Mean opacity of the triangle around barycentrics (u, v) over an area that is `share`
-  /// of the triangle's, [0,1].
-  [[nodiscard]] float mean(const TexturedTriangle& triangle, float u, float v, float share) const;
-
- private:
-  struct Key {
-    int texture;
-    float factor, cutoff;
-    auto operator<=>(const Key&) const = default;
-  };
-  [[nodiscard]] Key key_of(const TexturedCorners& corners) const;
-  [[nodiscard]] const OpacityMipLevels* find(const Key& key) const;
-
-  const std::vector<Material>& materials_;
-  std::vector<std::pair<Key, OpacityMipLevels>> mip_levels_;  ///< sorted by key
-};
 
 }  // namespace dapple

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <optional>
 
+#include "bvh/opacity/texture_integrals.hpp"
 #include "bvh/opacity/triangle_opacity.hpp"
 #include "dapple/error.hpp"
 #include "scene/lights/rect_axes.hpp"
@@ -21,8 +22,7 @@ void store(const V3f& from, float (&to)[3]) {
 constexpr std::size_t kMostDivisions = 16, kMostLookups = 1u << 22;
 
 /// Mean opacity of a triangle, by the middles of its parts.
-float mean_opacity(const TextureIntegrals& integrals, const TexturedTriangle& triangle,
-                   std::size_t divisions) {
+float mean_opacity(const TriangleIntegral& triangle, std::size_t divisions) {
   const auto n = static_cast<float>(divisions);
   const float share = 1 / (n * n);
   double sum = 0;
@@ -30,8 +30,8 @@ float mean_opacity(const TextureIntegrals& integrals, const TexturedTriangle& tr
     for (std::size_t j = 0; i + j < divisions; ++j)
       for (const float third : {1.0f / 3, 2.0f / 3}) {
         if (third > 0.5f && i + j + 1 == divisions) continue;  // beyond the third side
-        sum += double{integrals.mean(triangle, (static_cast<float>(i) + third) / n,
-                                     (static_cast<float>(j) + third) / n, share)};
+        sum += double{triangle.mean((static_cast<float>(i) + third) / n,
+                                    (static_cast<float>(j) + third) / n, share)};
       }
   return static_cast<float>(sum * double{share});
 }
@@ -53,7 +53,7 @@ std::vector<float> mean_opacities(const Scene& scene, const OpaqueTexels& texels
   const std::size_t divisions = std::clamp<std::size_t>(affordable, 1, kMostDivisions);
   auto next = textured.begin();
   for (float& opacity : opacities)
-    if (opacity < 0) opacity = mean_opacity(integrals, *next++, divisions);
+    if (opacity < 0) opacity = mean_opacity(integrals.of(*next++), divisions);
   return opacities;
 }
 

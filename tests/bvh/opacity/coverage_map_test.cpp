@@ -8,7 +8,7 @@
 #include <random>
 
 #include "bvh/build/object_bvh.hpp"
-#include "bvh/opacity/triangle_opacity.hpp"
+#include "bvh/opacity/texture_integrals.hpp"
 #include "support/scenes/uniform_map.hpp"
 
 namespace dapple {
@@ -323,7 +323,7 @@ TEST(OpacityMipLevels, ACutOutCountsTheAlphasOfAllThreeCorners) {
     corners.has_texture = true;
     const std::vector<TexturedTriangle> triangle{
         pack_textured(corners, Wrap::repeat, Wrap::repeat)};
-    return TextureIntegrals(scene, triangle).mean(triangle[0], 0.3f, 0.3f, 1);
+    return TextureIntegrals(scene, triangle).of(triangle[0]).mean(0.3f, 0.3f, 1);
   };
   for (const auto& alphas :
        {std::array{0.0f, 1.0f, 1.0f}, {1.0f, 0.0f, 1.0f}, {1.0f, 1.0f, 0.0f}}) {

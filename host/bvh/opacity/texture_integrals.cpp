@@ -1,0 +1,109 @@
+#include "bvh/opacity/texture_integrals.hpp"
+
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "bvh/opacity/triangle_opacity.hpp"
+
+namespace dapple {
+std::shared_ptr<const OpacityMipLevels> SharedMipLevels::of(const OpacityTexture& texture) {
+  const std::shared_ptr<Entry> entry = entry_of(texture);
+  std::call_once(entry->made, [&] {
+    const Texture& image = textures_[static_cast<std::size_t>(texture.texture)];
+    // A thread that waits for its own tasks must not begin another object's, which may want these.
+    tbb::this_task_arena::isolate([&] {
+      entry->levels =
+          std::make_shared<const OpacityMipLevels>(image, texture.factor, texture.cutoff);
+    });
+    keep(entry, mip_level_texels(image) * sizeof(float));
+  });
+  return {entry, entry->levels.get()};
+}
+
+std::shared_ptr<SharedMipLevels::Entry> SharedMipLevels::entry_of(const OpacityTexture& texture) {
+  const std::lock_guard lock(mutex_);
+  std::weak_ptr<Entry>& known = entries_[texture];
+  std::shared_ptr<Entry> entry = known.lock();
+  if (!entry) known = entry = std::make_shared<Entry>();
+  return entry;
+}
+
+void SharedMipLevels::keep(std::shared_ptr<Entry> entry, std::size_t bytes) {
+  const std::lock_guard lock(mutex_);
+  kept_.emplace_back(std::move(entry), bytes);
+  kept_bytes_ += bytes;
+  while (kept_bytes_ > most_bytes_) {
+    kept_bytes_ -= kept_.front().second;
+    kept_.pop_front();
+  }
+}
+
+TriangleIntegral::TriangleIntegral(const TexturedCorners& corners, const Material& material,
+                                   const OpacityMipLevels* levels)
+    : corners_(corners), factor_(material.alpha), cutoff_(cutoff_of(material)), levels_(levels) {
+  if (!levels_) return;
+  const auto& [a, b, c] = corners_.uv;
+  const V2f e1 = (b - a) * levels_->size(), e2 = (c - a) * levels_->size();
+  texels_ = 0.5f * std::fabs(e1.x * e2.y - e1.y * e2.x);
+}
+
+float TriangleIntegral::mean(float u, float v, float share) const {
+  const float w = 1.0f - u - v;
+  const auto& alphas = corners_.alpha;
+  const float alpha = factor_ * (alphas[0] * w + alphas[1] * u + alphas[2] * v);
+  if (!levels_) return thresholded(alpha, cutoff_);
+  const auto& [a, b, c] = corners_.uv;
+  const float mean = levels_->mean(a * w + b * u + c * v, std::sqrt(texels_ * share));
+  return cutoff_ < 0.0f ? std::clamp(mean * alpha, 0.0f, 1.0f) : mean;
+}
+
+// The mean of a blended texture is linear in the factor, which is applied later. The mean of a
+// cut-out texture is not, so there are mip levels for each factor. The factor is the mean over the
+// corners, rounded.
+OpacityTexture TextureIntegrals::texture_of(const TexturedCorners& corners) const {
+  const Material& material = materials_[corners.material];
+  const float cutoff = cutoff_of(material);
+  if (cutoff < 0.0f) return {material.alpha_texture, 1.0f, -1.0f};
+  const float factor =
+      material.alpha * (corners.alpha[0] + corners.alpha[1] + corners.alpha[2]) / 3.0f;
+  return {material.alpha_texture, std::round(factor * 64.0f) / 64.0f, cutoff};
+}
+
+TextureIntegrals::TextureIntegrals(const Scene& scene, std::span<const TexturedTriangle> textured,
+                                   SharedMipLevels& shared)
+    : materials_(scene.materials) {
+  std::vector<OpacityTexture> needed;
+  for (const TexturedTriangle& triangle : textured) {
+    const TexturedCorners corners = unpack_textured(triangle);
+    if (!corners.has_texture) continue;
+    const OpacityTexture texture = texture_of(corners);
+    if (needed.empty() || needed.back() != texture) needed.push_back(texture);
+  }
+  std::sort(needed.begin(), needed.end());
+  needed.erase(std::unique(needed.begin(), needed.end()), needed.end());
+  levels_.reserve(needed.size());
+  for (const OpacityTexture& texture : needed) levels_.emplace_back(texture, shared.of(texture));
+}
+
+TextureIntegrals::TextureIntegrals(const Scene& scene, std::span<const TexturedTriangle> textured)
+    : materials_(scene.materials) {
+  SharedMipLevels own(scene);
+  levels_ = TextureIntegrals(scene, textured, own).levels_;
+}
+
+TriangleIntegral TextureIntegrals::of(const TexturedTriangle& triangle) const {
+  const TexturedCorners corners = unpack_textured(triangle);
+  const OpacityMipLevels* levels = nullptr;
+  if (corners.has_texture) {
+    const OpacityTexture texture = texture_of(corners);
+    const auto at =
+        std::lower_bound(levels_.begin(), levels_.end(), texture,
+                         [](const auto& one, const OpacityTexture& of) { return one.first < of; });
+    if (at != levels_.end() && at->first == texture) levels = at->second.get();
+  }
+  return {corners, materials_[corners.material], levels};
+}
+
+}  // namespace dapple
