@@ -113,10 +113,25 @@ MUTATIONS = [
         "return alpha > cutoff ? 1.0f : 0.0f;",
         r"^(OpacityMipLevels|MipFootprint|TexturedTriangle)\."),
     Mutation(
-        "mip-factor-of-one-corner", "host/bvh/opacity/triangle_opacity.cpp",
+        "mip-factor-of-one-corner", "host/bvh/opacity/texture_integrals.cpp",
         "material.alpha * (corners.alpha[0] + corners.alpha[1] + corners.alpha[2]) / 3.0f;",
         "material.alpha * corners.alpha[0];",
         r"^(TexturedTriangle|OpacityMipLevels|MipFootprint|OpacityModel)\."),
+    Mutation(
+        "opaque-texels-without-the-last", "host/bvh/opacity/opaque_texels.cpp",
+        "last = texel(high) + 1;",
+        "last = texel(high);",
+        r"^(OpaqueTexels|OpacityOfTexels)\."),
+    Mutation(
+        "opaque-texels-not-mirrored", "host/bvh/opacity/opaque_texels.cpp",
+        "const int a = first_period % 2 != 0 ? size - 1 - from : from;",
+        "const int a = from;",
+        r"^(OpaqueTexels|OpacityOfTexels)\."),
+    Mutation(
+        "opaque-texels-of-any-vertex-alpha", "host/bvh/opacity/triangle_opacity.cpp",
+        "if (material.alpha_mode == AlphaMode::mask && !is_factor_1) return std::nullopt;",
+        "(void)is_factor_1;",
+        r"^(OpaqueTexels|OpacityOfTexels)\."),
     Mutation(
         "segment-opacity-of-one-end", "host/bvh/opacity/triangle_opacity.cpp",
         "alpha *= 0.5f * (mesh.vertex_alpha[at[0]] + mesh.vertex_alpha[at[1]]);",
