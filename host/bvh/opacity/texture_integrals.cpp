@@ -63,7 +63,7 @@ float TriangleIntegral::mean(float u, float v, float share) const {
 // cut-out texture is not, so there are mip levels for each factor. The factor is the mean over the
 // corners, rounded.
 OpacityTexture TextureIntegrals::texture_of(const TexturedCorners& corners) const {
-  const Material& material = materials_[corners.material];
+  const Material& material = (*materials_)[corners.material];
   const float cutoff = cutoff_of(material);
   if (cutoff < 0.0f) return {material.alpha_texture, 1.0f, -1.0f};
   const float factor =
@@ -73,7 +73,7 @@ OpacityTexture TextureIntegrals::texture_of(const TexturedCorners& corners) cons
 
 TextureIntegrals::TextureIntegrals(const Scene& scene, std::span<const TexturedTriangle> textured,
                                    SharedMipLevels& shared)
-    : materials_(scene.materials) {
+    : materials_(&scene.materials) {
   std::vector<OpacityTexture> needed;
   for (const TexturedTriangle& triangle : textured) {
     const TexturedCorners corners = unpack_textured(triangle);
@@ -88,7 +88,7 @@ TextureIntegrals::TextureIntegrals(const Scene& scene, std::span<const TexturedT
 }
 
 TextureIntegrals::TextureIntegrals(const Scene& scene, std::span<const TexturedTriangle> textured)
-    : materials_(scene.materials) {
+    : materials_(&scene.materials) {
   SharedMipLevels own(scene);
   levels_ = TextureIntegrals(scene, textured, own).levels_;
 }
@@ -103,7 +103,7 @@ TriangleIntegral TextureIntegrals::of(const TexturedTriangle& triangle) const {
                          [](const auto& one, const OpacityTexture& of) { return one.first < of; });
     if (at != levels_.end() && at->first == texture) levels = at->second.get();
   }
-  return {corners, materials_[corners.material], levels};
+  return {corners, (*materials_)[corners.material], levels};
 }
 
 }  // namespace dapple

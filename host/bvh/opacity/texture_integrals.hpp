@@ -69,6 +69,8 @@ class TriangleIntegral {
 
 class TextureIntegrals {
  public:
+  /// Of no triangles.
+  TextureIntegrals() = default;
   /// Gets the mip levels that the `textured` triangles need from `shared`. `scene` must outlive
   /// this object.
   TextureIntegrals(const Scene& scene, std::span<const TexturedTriangle> textured,
@@ -81,7 +83,7 @@ class TextureIntegrals {
  private:
   [[nodiscard]] OpacityTexture texture_of(const TexturedCorners& corners) const;
 
-  const std::vector<Material>& materials_;
+  const std::vector<Material>* materials_ = nullptr;
   std::vector<std::pair<OpacityTexture, std::shared_ptr<const OpacityMipLevels>>>
       levels_;  ///< sorted
 };

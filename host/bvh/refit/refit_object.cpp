@@ -34,10 +34,11 @@ void set_boxes(BvhNode& node, const WideTree& tree, const WideNode& wide) {
 
 class ObjectRefit : public SubtreeSummaries {
  public:
-  ObjectRefit(const Scene& scene, const Mesh& mesh, const ObjectArrays& object, RefitRecord& record)
-      : scene_(scene),
-        mesh_(mesh),
+  ObjectRefit(const Mesh& mesh, const ObjectArrays& object,
+              const std::function<const TextureIntegrals&()>& textures, RefitRecord& record)
+      : mesh_(mesh),
         object_(object),
+        textures_(textures),
         record_(record),
         subtree_(mesh, object, record),
         moved_(record.subtrees.size()),
@@ -54,8 +55,8 @@ class ObjectRefit : public SubtreeSummaries {
       summary.parts.push_back(child.box);
     summary.sah_cost = expected_visits(half_areas, summary.box);
     const bool needs_textures = find_deformed() || has_textured_leaves();
-    const TextureIntegrals integrals(
-        scene_, needs_textures ? object_.textured : std::span<const TexturedTriangle>{});
+    const TextureIntegrals none;
+    const TextureIntegrals& integrals = needs_textures ? textures_() : none;
     measure_deformed(integrals);
     const Summary all = prefilter({object_, upper, record_.upper_nodes, &record_, this}, integrals);
     const bool wall = summary.opacity.wall;
@@ -163,9 +164,9 @@ class ObjectRefit : public SubtreeSummaries {
     });
   }
 
-  const Scene& scene_;
   const Mesh& mesh_;
   const ObjectArrays& object_;
+  const std::function<const TextureIntegrals&()>& textures_;
   RefitRecord& record_;
   SubtreeRefit subtree_;
   std::vector<MovedPart> moved_;
@@ -175,9 +176,10 @@ class ObjectRefit : public SubtreeSummaries {
 
 }  // namespace
 
-void refit_object(const Scene& scene, const Mesh& mesh, const ObjectArrays& object,
-                  RefitRecord& record, ObjectSummary& summary) {
-  ObjectRefit(scene, mesh, object, record).refit(summary);
+void refit_object(const Mesh& mesh, const ObjectArrays& object,
+                  const std::function<const TextureIntegrals&()>& textures, RefitRecord& record,
+                  ObjectSummary& summary) {
+  ObjectRefit(mesh, object, textures, record).refit(summary);
 }
 
 }  // namespace dapple

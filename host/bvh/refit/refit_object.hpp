@@ -2,6 +2,8 @@
 // Out: the same BVH with new triangles, boxes and opacities.
 #pragma once
 
+#include <functional>
+
 #include "bvh/opacity/prefilter.hpp"
 
 namespace dapple {
@@ -10,8 +12,9 @@ namespace dapple {
 /// from the mesh of the build only in its positions. Runs in parallel; the bits of the result do
 /// not depend on the number of threads. The exact boxes contain the triangles, as after a new
 /// build. Opacities of subtrees that moved nearly rigidly come from the record; all other opacities
-/// are prefiltered again.
-void refit_object(const Scene& scene, const Mesh& mesh, const ObjectArrays& object,
-                  RefitRecord& record, ObjectSummary& summary);
+/// are prefiltered again. `textures`: of all textured triangles, made when they are needed first.
+void refit_object(const Mesh& mesh, const ObjectArrays& object,
+                  const std::function<const TextureIntegrals&()>& textures, RefitRecord& record,
+                  ObjectSummary& summary);
 
 }  // namespace dapple

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <mutex>
 
 #include "bvh/build/joined_objects.hpp"
 #include "bvh/build/scene_bvh.hpp"
@@ -160,9 +161,15 @@ std::vector<std::size_t> UpdatableBvh::State::sort_objects(const Scene& scene,
 }
 
 void UpdatableBvh::State::refit(const Scene& scene, const std::vector<std::size_t>& moved) {
+  std::once_flag made;
+  TextureIntegrals integrals;
+  const auto textures = [&]() -> const TextureIntegrals& {
+    std::call_once(made, [&] { integrals = TextureIntegrals(scene, bvh.textured); });
+    return integrals;
+  };
   tbb::parallel_for(std::size_t{0}, moved.size(), [&](std::size_t i) {
     const std::size_t m = moved[i];
-    refit_object(scene, scene.meshes[m], arrays_of(m), records[m], objects[m]);
+    refit_object(scene.meshes[m], arrays_of(m), textures, records[m], objects[m]);
   });
 }
 
