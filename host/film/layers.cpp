@@ -7,7 +7,6 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
-#include <set>
 
 #include "camera/camera_splitting.hpp"
 #include "film/light_layers.hpp"
@@ -258,20 +257,6 @@ class Layers {
 };
 
 }  // namespace
-
-std::vector<std::string> light_names(const std::vector<Light>& lights) {
-  std::vector<std::string> names;
-  for (const Light& light : lights) names.push_back(layer_name(light.name));
-  std::set<std::string> first(names.begin(), names.end());  // keep their names
-  std::set<std::string> taken = first;
-  for (std::string& name : names) {
-    if (first.erase(name) > 0) continue;
-    const std::string base = name;
-    name += "_2";
-    for (int n = 3; !taken.insert(name).second; ++n) name = base + "_" + std::to_string(n);
-  }
-  return names;
-}
 
 std::string layer_name(const std::string& text) {
   std::string name;

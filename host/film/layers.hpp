@@ -15,7 +15,8 @@ namespace dapple {
 struct FilmLayout;
 struct TracedPicture;
 
-/// A name for each light, all different: the part of its layers' names after "light.".
+/// A name for each light, all different: the part of its layers' names after "light.". Defined in
+/// light_layers.cpp.
 std::vector<std::string> light_names(const std::vector<Light>& lights);
 
 /// Makes the film's planes from the means of the sums; docs/layers.md lists their channels. Stores

@@ -15,8 +15,8 @@ struct LightLayer {
   std::vector<std::size_t> lights;  ///< indices, ascending
 };
 
-/// The layers in the order of their first lights. A light that is in no group keeps its name of
-/// light_names(); a group whose name is taken by such a light gets a number, as lights do.
+/// The layers in the order of their first lights. Lights in no group are named first, then groups,
+/// then lights in groups (light_names()), so that no light has the name of another's layer.
 std::vector<LightLayer> light_layers(const std::vector<Light>& lights);
 
 /// The name beside them of what the sky of AO gives: "ambient", with a number if a light has it.

@@ -358,8 +358,9 @@ RenderResult Renderer::render_shutter(const std::function<Scene(int)>& scene_at,
   bounds.extendBy(moments.bounds);
   const MatteNames names = matte_names(scene, options);
   const DeviceBuffers& buffers = *kept.on_device.buffers;
-  const FilmLayout layout(view.crop, sampled, film_scales(view, bounds, buffers.light_records),
-                          lights, !buffers.corner_normals.empty());
+  const FilmLayout layout(view.crop, sampled,
+                          film_scales(view, bounds, buffers.light_records, moments.lights), lights,
+                          !buffers.corner_normals.empty());
   statistics.seconds.prepare = total.seconds() - counted_seconds(statistics);
   const RenderOptions traced = with_chosen_footprint(
       kept, {view, options, bounds, lights},

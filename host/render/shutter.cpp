@@ -8,6 +8,7 @@
 
 #include "camera/camera_splitting.hpp"
 #include "dapple/error.hpp"
+#include "device/upload/light_upload.hpp"
 #include "sampling/shard.hpp"
 #include "scene/check/scene_check.hpp"
 #include "scene/corner_normals.hpp"
@@ -64,9 +65,12 @@ ShutterScenes look_at_moments(const Shutter& shutter) {
     scenes.smooth = scenes.smooth || is_smooth(scene);
     if (time == 0) scenes.radiance.resize(scene.lights.size(), V3f(0, 0, 0));
     if (scenes.radiance.size() != scene.lights.size()) scenes.radiance.clear();
+    std::vector<EmitterTriangle> of_mesh_lights;
+    pack_lights(scene, scenes.lights, of_mesh_lights);
     for (std::size_t i = 0; i < scenes.radiance.size(); ++i)
       if (scenes.radiance[i] == V3f(0, 0, 0)) scenes.radiance[i] = scene.lights[i].radiance;
   }
+  if (scenes.radiance.empty()) scenes.lights.clear();
   return scenes;
 }
 

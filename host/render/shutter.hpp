@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "dapple/render.hpp"
+#include "dapple/shared/light_record.h"
 
 namespace dapple {
 
@@ -28,6 +29,8 @@ struct ShutterScenes {
   /// By light, at the first moment at which it is not 0; empty for a single moment, or if lights
   /// come or go.
   std::vector<V3f> radiance;
+  /// Of all lights at each moment, one moment after the other; empty as `radiance` is.
+  std::vector<LightRecord> lights;
 };
 
 ShutterScenes look_at_moments(const Shutter& shutter);

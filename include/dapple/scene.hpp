@@ -115,6 +115,7 @@ struct Environment {
   std::vector<V3f> radiance;        ///< row by row, linear RGB, finite, not negative
   std::string file = {};            ///< path that it was read from; empty: none
   std::size_t negative_pixels = 0;  ///< of the file; their negative channels became 0
+  bool is_cropped = false;          ///< whether the file's data window is not its display window
 };
 
 /// A light. Irradiance at a point is the integral of radiance * cosine * transmittance.

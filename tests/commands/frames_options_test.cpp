@@ -1,5 +1,5 @@
 // Options of sequences: where a lens focuses without a distance of its own, other noise in each
-// frame, and the footprint.
+// frame, the footprint, the sky and the exposure.
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
 #include <ImfStringAttribute.h>
@@ -60,6 +60,37 @@ class FramesOptions : public ProgramRun {
     std::ofstream(path("dive.glb"), std::ios::binary)
         .write(reinterpret_cast<const char*>(glb.data()), static_cast<std::streamsize>(glb.size()));
   }
+  /// Writes turn.glb: a sun shines on the back of a triangle until 1 s, and then on its front.
+  void write_turn() const {
+    test::GltfBuilder b = test::one_triangle();
+    b.doc["extensionsUsed"] = {"KHR_lights_punctual"};
+    b.doc["extensions"]["KHR_lights_punctual"]["lights"] =
+        test::json::array({{{"type", "directional"}, {"name", "sun"}, {"intensity", 10}}});
+    b.add("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 0.2}, {"znear", 0.1}}}});
+    b.add("nodes", {{"translation", {0.3, 0.3, 5}}, {"camera", 0}});
+    const int sun = b.add("nodes", {{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    const int times = b.add_accessor(std::vector<float>{0, 1}, test::kFloat, "SCALAR");
+    const int values =
+        b.add_accessor(std::vector<float>{0, 1, 0, 0, 0, 0, 0, 1}, test::kFloat, "VEC4");
+    b.add("animations",
+          {{"samplers", {{{"input", times}, {"output", values}, {"interpolation", "STEP"}}}},
+           {"channels", {{{"sampler", 0}, {"target", {{"node", sun}, {"path", "rotation"}}}}}}});
+    const auto glb = b.glb();
+    std::ofstream(path("turn.glb"), std::ios::binary)
+        .write(reinterpret_cast<const char*>(glb.data()), static_cast<std::streamsize>(glb.size()));
+  }
+  /// Expects that frame 1 is the same in a sequence from frame 0 as by itself.
+  void expect_frame_1_by_itself(const std::string& options) const {
+    const std::string render = "render " + options + " --width 24 --height 24 --spp 4 --fps 1 -q ";
+    for (const char* frames :
+         {"--frames 0-1 -o a.#.exr --png a.#.png", "--frames 1-1 -o b.#.exr --png b.#.png"}) {
+      const Outcome run = dapple(render + frames);
+      ASSERT_EQ(run.code, 0) << run.err;
+    }
+    EXPECT_EQ(bytes_of(path("a.1.png")), bytes_of(path("b.1.png")));
+    EXPECT_EQ(read_exr(path("a.1.exr")).find("R")->pixels,
+              read_exr(path("b.1.exr")).find("R")->pixels);
+  }
   [[nodiscard]] float focus_distance(const char* name) const {
     const Imf::InputFile file(path(name).c_str());
     const auto& header = file.header();
@@ -89,6 +120,16 @@ TEST_F(FramesOptions, AFirstFrameThatShowsNothingLeavesTheFootprintToTheNext) {
   EXPECT_EQ(footprint("a.0.json"), 4);
   EXPECT_LT(footprint("a.1.json"), 4);
   EXPECT_EQ(footprint("a.2.json"), footprint("a.1.json"));
+}
+
+TEST_F(FramesOptions, AFirstFrameThatIsLitFromBehindLeavesSkyAndExposureToTheNext) {
+  write_turn();
+  expect_frame_1_by_itself("turn.glb --passes ao,light,albedo,back");
+}
+
+TEST_F(FramesOptions, AFirstFrameThatShowsNothingLeavesTheExposureToTheNext) {
+  write_dive();
+  expect_frame_1_by_itself("dive.glb --passes ao --max-bias 0 --ambient 50");
 }
 
 TEST_F(FramesOptions, FramesHaveTheSameNoiseUnlessTheSeedIsAnimated) {

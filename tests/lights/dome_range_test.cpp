@@ -75,6 +75,24 @@ TEST_F(DomeRange, NegativeRadianceCountsAsZeroAndIsNamed) {
       contains(scene.warnings[0], "a.exr: pixels with negative radiance: 1; it counts as 0"));
 }
 
+// As compositors write them that trim black borders.
+TEST_F(DomeRange, AnImageThatIsAPartOfItsDisplayWindowIsNamed) {
+  Light light;
+  light.kind = LightKind::dome;
+  light.environment = load_environment(exr_file(2));
+  EXPECT_FALSE(light.environment->is_cropped);
+  Film film = read_exr(path("a.exr"));
+  film.width = 4;
+  film.height = 2;
+  write_exr(film, path("a.exr"));
+  light.environment = load_environment(path("a.exr"));
+  Scene scene;
+  scene.lights = {light};
+  finalize_domes(scene);
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_TRUE(contains(scene.warnings[0], "a.exr: its data window, which is not its display"));
+}
+
 TEST_F(DomeRange, ImagesThatAreNotTwiceAsWideAsHighAreNamed) {
   for (const bool is_square : {false, true}) {
     Scene scene;

@@ -1,6 +1,7 @@
 // Lights of a group share one layer: the sum of what each light gives alone.
 #include <gtest/gtest.h>
 
+#include "film/layers.hpp"
 #include "film/light_layers.hpp"
 #include "support/scenes/point_on_ground.hpp"
 
@@ -43,6 +44,22 @@ TEST(LightLayers, HaveNamesThatDiffer) {
   EXPECT_EQ(names_of({light_of("a", ""), light_of("a", ""), light_of("a_2", "")}),
             (Names{"a", "a_3", "a_2"}))
       << "a name that only one light has stays";
+}
+
+// Errors and biases are by light or by layer, so that one name must not be of both.
+TEST(LightLayers, LightsInGroupsHaveNoNameOfALayer) {
+  const std::vector<Light> lights = {light_of("rim", "rim"), light_of("a", "rim"),
+                                     light_of("a", "")};
+  EXPECT_EQ(names_of(lights), (Names{"rim", "a"}));
+  EXPECT_EQ(light_names(lights), (Names{"rim_2", "a_2", "a"}));
+}
+
+// As of a field of lamps: instances of a mesh light have its name.
+TEST(LightLayers, ManyOfOneNameAreNamedAtOnce) {
+  const std::vector<std::string> names =
+      light_names(std::vector<Light>(30'000, light_of("lamp", "")));
+  EXPECT_EQ(names.front(), "lamp");
+  EXPECT_EQ(names.back(), "lamp_30000");
 }
 
 TEST(LightLayers, OfAGroupAreTheSumOfItsLightsWithinFloatRounding) {

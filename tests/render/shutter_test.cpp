@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -221,6 +222,37 @@ TEST(Shutter, AStillSceneHasTheBitsOfAPictureWithoutAShutter) {
         Renderer().render_shutter([&](int) { return square_at(1.03f); }, times, options);
     for (const Plane& plane : plain.film.planes)
       EXPECT_EQ(open.film.find(plane.channel)->pixels, plane.pixels) << plane.channel << times;
+  }
+}
+
+// Sums have the units of all moments: those of a light of a hundredth of a millimetre would leave
+// no room for one of half a metre.
+TEST(Shutter, ALightThatGrowsWhileItIsOpenGivesTheMeanOfItsMoments) {
+  const auto with_light = [](float side) {
+    Scene scene = square_at(1);
+    Light light;
+    light.name = "lamp";
+    light.position = {0, 0, 1};
+    light.direction = {0, 0, -1};
+    light.edge_u = {side, 0, 0};
+    light.edge_v = {0, side, 0};
+    scene.lights.push_back(light);
+    return scene;
+  };
+  const auto mean = [](const Film& film) {
+    const std::vector<float>& values = film.find("light.lamp.R")->pixels;
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  };
+  RenderOptions options = small_picture(64);
+  options.ao = false;
+  options.light = true;
+  const double grown = mean(render(with_light(0.5f), options).film);
+  EXPECT_GT(grown, 1e-4);
+  for (const float first : {1e-5f, 1e-3f}) {
+    const auto scene_at = [&](int k) { return with_light(k == 0 ? first : 0.5f); };
+    EXPECT_NEAR(mean(Renderer().render_shutter(scene_at, 4, options).film), 0.75 * grown,
+                0.01 * grown)
+        << first;
   }
 }
 

@@ -2,6 +2,7 @@
 #include "commands/arguments/output_paths.hpp"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 
@@ -61,12 +62,27 @@ void check_outputs(const std::vector<OutputPath>& outputs, Folders folders) {
 
 void check_outputs_spare(const std::vector<OutputPath>& outputs,
                          const std::vector<std::string>& inputs) {
-  for (const OutputPath& output : outputs) {
-    for (const std::string& input : inputs) {
-      if (!is_same_file(output.path, input)) continue;
-      refuse(output, fmt::format("would overwrite {}, which is read", input));
-    }
+  const InputFiles files(inputs);
+  for (const OutputPath& output : outputs) check_spares(output, files);
+}
+
+InputFiles::InputFiles(const std::vector<std::string>& paths) {
+  for (const std::string& path : paths) {
+    struct stat found {};
+    if (stat(path.c_str(), &found) == 0) paths_.try_emplace({found.st_dev, found.st_ino}, path);
   }
+}
+
+const std::string* InputFiles::same_as(const std::string& path) const {
+  struct stat found {};
+  if (paths_.empty() || stat(path.c_str(), &found) != 0) return nullptr;
+  const auto at = paths_.find({found.st_dev, found.st_ino});
+  return at == paths_.end() ? nullptr : &at->second;
+}
+
+void check_spares(const OutputPath& output, const InputFiles& inputs) {
+  if (const std::string* input = inputs.same_as(output.path))
+    refuse(output, fmt::format("would overwrite {}, which is read", *input));
 }
 
 }  // namespace dapple

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace dapple {
@@ -27,7 +29,19 @@ std::string frame_path(const std::string& pattern, std::int64_t number);
 enum class Folders { tidy, leave };
 void check_outputs(const std::vector<OutputPath>& outputs, Folders folders = Folders::tidy);
 
+/// Files that are read: also by other names, as through links. Those that are not there are none.
+class InputFiles {
+ public:
+  explicit InputFiles(const std::vector<std::string>& paths);
+  /// The file of the list that this path names; null: none.
+  [[nodiscard]] const std::string* same_as(const std::string& path) const;
+
+ private:
+  std::map<std::pair<std::uint64_t, std::uint64_t>, std::string> paths_;  ///< by device and inode
+};
+
 /// Throws Error usage, naming the flag, when an output is one of `inputs`.
+void check_spares(const OutputPath& output, const InputFiles& inputs);
 void check_outputs_spare(const std::vector<OutputPath>& outputs,
                          const std::vector<std::string>& inputs);
 

@@ -109,7 +109,9 @@ void check_files(const std::vector<Frame>& frames, const RenderArguments& a) {
 
 void check_files_spare(const std::vector<Frame>& frames, const RenderArguments& a,
                        const std::vector<std::string>& inputs) {
-  for (const Frame& frame : frames) check_outputs_spare(outputs_of(frame, a), inputs);
+  const InputFiles files(inputs);
+  for (const Frame& frame : frames)
+    for (const OutputPath& output : outputs_of(frame, a)) check_spares(output, files);
 }
 
 }  // namespace dapple

@@ -163,30 +163,34 @@ RenderResult render_frame(const RenderArguments& a, const Frame& frame, Shot& sh
   return result;
 }
 
-/// Whether there are lights, of which none reaches a pixel.
-bool has_dark_lights(const Film& film) {
+bool has_positive(const Plane& plane) {
+  return std::any_of(plane.pixels.begin(), plane.pixels.end(), [](float v) { return v > 0; });
+}
+
+/// Whether something is seen, and lit by a light from the front, if there are lights.
+bool is_lit(const Film& film) {
+  if (!has_positive(*film.find("A"))) return false;
   bool has_lights = false;
   for (const Plane& plane : film.planes) {
-    if (!plane.channel.starts_with("light.")) continue;
+    if (!plane.channel.starts_with("light.") || plane.channel.find(".back.") != std::string::npos)
+      continue;
+    if (has_positive(plane)) return true;
     has_lights = true;
-    if (std::any_of(plane.pixels.begin(), plane.pixels.end(), [](float v) { return v > 0; }))
-      return false;
   }
-  return has_lights;
+  return !has_lights;
 }
 
 /// What the later frames of a sequence take over from this one.
 void keep_choices(const RenderResult& result, bool has_dome, bool writes_png,
                   RenderOptions& options, PngOptions& png) {
   // They have the exposure and the sky of the first frame that is lit.
-  const bool is_lit = !has_dark_lights(result.film);
-  if (is_lit && !png.exposure && writes_png)
-    png.exposure = std::log2(automatic_exposure(result.film));
+  const bool lit = is_lit(result.film);
+  if (lit && !png.exposure && writes_png)
+    png.exposure = std::clamp(std::log2(automatic_exposure(result.film)), -100.0f, 100.0f);
   // A dome is the sky, whether the frame shows light or not.
-  if ((is_lit || has_dome) && !options.ambient)
+  if ((lit || has_dome) && !options.ambient)
     options.ambient = static_cast<float>(result.statistics.ambient);
-  const std::vector<float>& alpha = result.film.find("A")->pixels;
-  if (std::none_of(alpha.begin(), alpha.end(), [](float value) { return value > 0; })) return;
+  if (!has_positive(*result.film.find("A"))) return;
   // A frame that shows nothing has no bias to choose a footprint by.
   options.footprint = result.statistics.footprint;
   options.keep_footprint = true;

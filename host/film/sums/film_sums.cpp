@@ -76,13 +76,19 @@ Irradiance irradiance_of(const LightRecord& light, const Box3f& bounds) {
   }
 }
 
+/// A light that has shrunk to nothing has none.
+Irradiance of_both(const Irradiance& a, const Irradiance& b) {
+  if (!(a.smallest > 0)) return b;
+  if (!(b.smallest > 0)) return a;
+  return {std::min(a.smallest, b.smallest), std::max(a.largest, b.largest)};
+}
+
 /// A power of two for which the smallest irradiance has 28 bits, if then the largest has 35 at
 /// most: the sum of 2^24 rays of it stays below the limit. Lights that are so small against the
 /// scene that 12 bits ask for more may have up to 43, for 2^16 rays.
-float light_scale(const LightRecord& light, const Box3f& bounds) {
+float light_scale(const Irradiance& irradiance) {
   constexpr int kSmallestBits = 28, kLargestBits = 35, kFewBits = 12, kManyBits = 43;
   constexpr int kLeast = 26, kMost = 100;
-  const Irradiance irradiance = irradiance_of(light, bounds);
   int exponent = kLeast;
   if (irradiance.smallest > 0 && std::isfinite(irradiance.largest)) {
     const int smallest = std::ilogb(irradiance.smallest), largest = std::ilogb(irradiance.largest);
@@ -95,13 +101,19 @@ float light_scale(const LightRecord& light, const Box3f& bounds) {
 
 }  // namespace
 
-FilmScales film_scales(const View& view, const Box3f& bounds, std::span<const LightRecord> lights) {
+FilmScales film_scales(const View& view, const Box3f& bounds, std::span<const LightRecord> lights,
+                       std::span<const LightRecord> at_others) {
   const V3f eye(view.camera.to_world[3][0], view.camera.to_world[3][1], view.camera.to_world[3][2]);
   Box3f with_eye = bounds;
   with_eye.extendBy(eye);
   FilmScales scales{
       scale_for(largest_coordinate(bounds)), scale_for((with_eye.max - with_eye.min).length()), {}};
-  for (const LightRecord& light : lights) scales.lights.push_back(light_scale(light, bounds));
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    Irradiance all = irradiance_of(lights[i], bounds);
+    for (std::size_t k = i; k < at_others.size(); k += lights.size())
+      all = of_both(all, irradiance_of(at_others[k], bounds));
+    scales.lights.push_back(light_scale(all));
+  }
   return scales;
 }
 

@@ -34,7 +34,9 @@ struct FilmScales {
 /// Returns the scales for a scene in `bounds` and its lights. The irradiance of a light of radiance
 /// 1 at the farthest point of `bounds` has 28 bits, so that what a dark surface reflects of it has
 /// enough, or fewer, 12 if possible, if what it gives the nearest point would become too large.
-FilmScales film_scales(const View& view, const Box3f& bounds, std::span<const LightRecord> lights);
+/// `at_others`: the lights at other moments of a shutter, one moment after the other.
+FilmScales film_scales(const View& view, const Box3f& bounds, std::span<const LightRecord> lights,
+                       std::span<const LightRecord> at_others = {});
 
 /// Lights that share a layer, and the luminances of their radiances.
 struct LightGroup {

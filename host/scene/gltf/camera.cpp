@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <map>
 #include <numbers>
 #include <optional>
-#include <set>
 
+#include "scene/free_names.hpp"
 #include "scene/message.hpp"
 
 namespace dapple::gltf {
@@ -109,24 +108,8 @@ std::vector<Camera> read_lenses(const Document& document, std::vector<std::strin
   return lenses;
 }
 
-/// Names that cameras have, and how many of them asked for each. Later ones get _2, _3 and so on,
-/// so that --camera reaches them all.
-class CameraNames {
- public:
-  std::string free_one(const std::string& name) {
-    std::string free = name;
-    while (!taken_.insert(free).second)
-      free = fmt::format("{}_{}", name, ++last_.try_emplace(name, 1).first->second);
-    return free;
-  }
-
- private:
-  std::set<std::string> taken_;
-  std::map<std::string, int> last_;
-};
-
 void add_camera(const Document& document, const PlacedNode& placed,
-                const std::vector<Camera>& lenses, CameraNames& names, Scene& scene) {
+                const std::vector<Camera>& lenses, FreeNames& names, Scene& scene) {
   const auto& node = document.model.nodes[static_cast<std::size_t>(placed.node)];
   const auto& given = document.model.cameras[static_cast<std::size_t>(node.camera)];
   const std::string who = element("camera", static_cast<std::size_t>(node.camera), given.name);
@@ -135,10 +118,9 @@ void add_camera(const Document& document, const PlacedNode& placed,
   if (of_node != document.camera_node_extras.end())
     read_extras(of_node->second, element("node", static_cast<std::size_t>(placed.node), node.name),
                 document.file, camera, scene.warnings);
-  camera.name =
-      names.free_one(one_line(!given.name.empty()  ? given.name
-                              : !node.name.empty() ? node.name
-                                                   : fmt::format("camera_{}", node.camera)));
+  camera.name = names.take(one_line(!given.name.empty()  ? given.name
+                                    : !node.name.empty() ? node.name
+                                                         : fmt::format("camera_{}", node.camera)));
   const std::optional<M44f> to_world = rigid(placed.to_world);
   if (!to_world) {
     scene.warnings.push_back(one_line(
@@ -153,7 +135,7 @@ void add_camera(const Document& document, const PlacedNode& placed,
 
 void add_cameras(const Document& document, const std::vector<PlacedNode>& placed, Scene& scene) {
   const std::vector<Camera> lenses = read_lenses(document, scene.warnings);
-  CameraNames names;
+  FreeNames names;  // so that --camera reaches them all
   for (const PlacedNode& at : placed) {
     if (document.model.nodes[static_cast<std::size_t>(at.node)].camera >= 0) {
       add_camera(document, at, lenses, names, scene);

@@ -66,7 +66,9 @@ Environment read_exr_dome(const std::string& path) {
                       [&](std::size_t i) { pixels[i] = V3f(rows[r][i], rows[g][i], rows[b][i]); });
     dome.add(strip, pixels);
   }
-  return dome.take(path);
+  Environment environment = dome.take(path);
+  environment.is_cropped = file.header().dataWindow() != file.header().displayWindow();
+  return environment;
 }
 
 Environment read_radiance_dome(const std::string& path) {
@@ -89,6 +91,7 @@ Environment of_limited_size(Environment environment) {
   Environment coarse = dome.take(environment.file);
   coarse.file = environment.file;
   coarse.negative_pixels = environment.negative_pixels;
+  coarse.is_cropped = environment.is_cropped;
   return coarse;
 }
 
@@ -150,6 +153,10 @@ void finalize_domes(Scene& scene) {
       scene.warnings.push_back(
           fmt::format("{}: it is not twice as wide as high; it is taken as longitude and latitude",
                       image.file));
+    if (light.environment->is_cropped)
+      scene.warnings.push_back(fmt::format(
+          "{}: its data window, which is not its display window, is taken as the whole sphere",
+          image.file));
     if (light.environment->negative_pixels > 0)
       scene.warnings.push_back(fmt::format("{}: pixels with negative radiance: {}; it counts as 0",
                                            light.environment->file,
