@@ -2,6 +2,7 @@
 // lights; out: an Environment, or the lights with images of mean luminance 1 and limited size.
 #include "scene/images/dome_image.hpp"
 
+#include <ImfHeader.h>
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_for_each.h>
