@@ -286,6 +286,8 @@ ExrFile::~ExrFile() = default;
 
 const Imf::Header& ExrFile::header() const { return file_->header(0); }
 
+bool ExrFile::is_cropped() const { return header().dataWindow() != header().displayWindow(); }
+
 void ExrFile::read(std::uint32_t first, std::uint32_t count, std::span<const Channel> channels,
                    std::vector<std::vector<float>>& rows) {
   const Box2i& window = header().dataWindow();

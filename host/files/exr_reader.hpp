@@ -34,6 +34,8 @@ class ExrFile {
   [[nodiscard]] const Imf::Header& header() const;
   [[nodiscard]] std::uint32_t width() const { return width_; }
   [[nodiscard]] std::uint32_t height() const { return height_; }
+  /// Whether the data window is not the display window.
+  [[nodiscard]] bool is_cropped() const;
 
   struct Channel {
     std::string name;  ///< with the part's in front if an earlier part has one of that name

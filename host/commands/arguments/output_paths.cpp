@@ -14,16 +14,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Without links in its folders; empty if it has none.
+std::string whole_path(const std::string& path) {
+  std::error_code error;
+  // Absolute first: weakly_canonical() does not change a relative path that does not exist.
+  const fs::path whole = fs::weakly_canonical(fs::absolute(path, error), error);
+  return error ? std::string() : whole.string();
+}
+
 /// Existing files are the same if device and inode are, also through symbolic and hard links.
 /// Others are the same if their folders and names are.
 bool is_same_file(const std::string& a, const std::string& b) {
   std::error_code error;
   if (fs::equivalent(a, b, error)) return true;
-  // Absolute first: weakly_canonical() does not change a relative path that does not exist.
-  const fs::path whole_a = fs::weakly_canonical(fs::absolute(a, error), error);
-  if (error) return false;
-  const fs::path whole_b = fs::weakly_canonical(fs::absolute(b, error), error);
-  return !error && whole_a == whole_b;
+  const std::string whole = whole_path(a);
+  return !whole.empty() && whole == whole_path(b);
 }
 
 [[noreturn]] void refuse(const OutputPath& output, const std::string& why) {
@@ -69,15 +74,21 @@ void check_outputs_spare(const std::vector<OutputPath>& outputs,
 InputFiles::InputFiles(const std::vector<std::string>& paths) {
   for (const std::string& path : paths) {
     struct stat found {};
-    if (stat(path.c_str(), &found) == 0) paths_.try_emplace({found.st_dev, found.st_ino}, path);
+    if (stat(path.c_str(), &found) == 0)
+      paths_.try_emplace({found.st_dev, found.st_ino}, path);
+    else if (const std::string whole = whole_path(path); !whole.empty())
+      missing_.try_emplace(whole, path);
   }
 }
 
 const std::string* InputFiles::same_as(const std::string& path) const {
   struct stat found {};
-  if (paths_.empty() || stat(path.c_str(), &found) != 0) return nullptr;
-  const auto at = paths_.find({found.st_dev, found.st_ino});
-  return at == paths_.end() ? nullptr : &at->second;
+  if (stat(path.c_str(), &found) == 0) {
+    const auto at = paths_.find({found.st_dev, found.st_ino});
+    return at == paths_.end() ? nullptr : &at->second;
+  }
+  const auto at = missing_.empty() ? missing_.end() : missing_.find(whole_path(path));
+  return at == missing_.end() ? nullptr : &at->second;
 }
 
 void check_spares(const OutputPath& output, const InputFiles& inputs) {

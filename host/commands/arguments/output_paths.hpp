@@ -29,7 +29,7 @@ std::string frame_path(const std::string& pattern, std::int64_t number);
 enum class Folders { tidy, leave };
 void check_outputs(const std::vector<OutputPath>& outputs, Folders folders = Folders::tidy);
 
-/// Files that are read: also by other names, as through links. Those that are not there are none.
+/// Files that are read: also by other names, as through links.
 class InputFiles {
  public:
   explicit InputFiles(const std::vector<std::string>& paths);
@@ -38,6 +38,7 @@ class InputFiles {
 
  private:
   std::map<std::pair<std::uint64_t, std::uint64_t>, std::string> paths_;  ///< by device and inode
+  std::map<std::string, std::string> missing_;                            ///< by whole path
 };
 
 /// Throws Error usage, naming the flag, when an output is one of `inputs`.

@@ -2,7 +2,6 @@
 // lights; out: an Environment, or the lights with images of mean luminance 1 and limited size.
 #include "scene/images/dome_image.hpp"
 
-#include <ImfHeader.h>
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_for_each.h>
@@ -68,7 +67,7 @@ Environment read_exr_dome(const std::string& path) {
     dome.add(strip, pixels);
   }
   Environment environment = dome.take(path);
-  environment.is_cropped = file.header().dataWindow() != file.header().displayWindow();
+  environment.is_cropped = file.is_cropped();
   return environment;
 }
 
