@@ -30,7 +30,7 @@ using Imath::Box2i;
 using Imath::V2i;
 
 constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;
-constexpr std::size_t kMaxParts = 4096;
+constexpr std::size_t kMaxParts = 65536;  // one a layer: a scene may have thousands of lights
 constexpr std::size_t kMaxName = 255;     ///< of an attribute or its type
 constexpr std::uint32_t kStripRows = 64;  // a multiple of ZIP's blocks of 16 rows
 
