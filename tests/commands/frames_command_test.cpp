@@ -236,6 +236,8 @@ TEST_F(FramesCommand, InvalidArgumentsAreRefusedBeforeAnythingIsRendered) {
   refuses("--frames 1-2 -o 'dir#/out.exr'", "needs a place for the frame's number");
   refuses("--frames 1-2 -o o.#.exr --png p.png", "--png p.png: with --frames");
   refuses("--frames 1-2 -o o.#.exr --stats-json s.json", "--stats-json s.json: with --frames");
+  refuses("--frames 0-10 -o o.#.exr --deep o.1#.exr",
+          "--output o.10.exr: is the --deep of another frame");
   refuses("--frames 1-2 -o o.#.exr --checkpoint c", "--checkpoint is for one image");
   refuses("--frames 1-2 -o o.#.exr --resume c", "--resume is for one image");
   refuses("--frames 1-2 --frame 1 -o o.#.exr", "--frame");

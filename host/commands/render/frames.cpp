@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <map>
 
 #include "commands/arguments/option_text.hpp"
 #include "commands/arguments/output_paths.hpp"
@@ -59,6 +60,22 @@ std::vector<OutputPath> outputs_of(const Frame& frame, const RenderArguments& a)
   return outputs;
 }
 
+/// Throws Error usage where two frames write one file, as o.#.exr and o.1#.exr do. Those of one
+/// frame are checked.
+void check_frames_differ(const std::vector<Frame>& frames, const RenderArguments& a) {
+  std::map<std::string, std::string> flags;  // by path
+  for (const Frame& frame : frames) {
+    for (const OutputPath& output : outputs_of(frame, a)) {
+      if (output.flag == "--checkpoint") continue;
+      const std::string path = std::filesystem::path(output.path).lexically_normal().string();
+      const auto [other, is_new] = flags.try_emplace(path, output.flag);
+      if (!is_new)
+        throw Error(ErrorKind::usage, fmt::format("{} {}: is the {} of another frame", output.flag,
+                                                  output.path, other->second));
+    }
+  }
+}
+
 /// A new checkpoint may replace the one that the render resumes from. No other output may replace
 /// an input.
 void check_resumed_spare(std::vector<OutputPath> outputs, const std::string& resume) {
@@ -102,6 +119,7 @@ void check_files(const std::vector<Frame>& frames, const RenderArguments& a) {
   // Folders have many files, and frames one folder: it is tidied once.
   for (const Frame& frame : frames)
     check_outputs(outputs_of(frame, a), &frame == &frames.front() ? Folders::tidy : Folders::leave);
+  check_frames_differ(frames, a);
   check_files_spare(frames, a, inputs);
   for (const std::string& resumed : {a.resume, a.resume_or_begin})
     if (!resumed.empty()) check_resumed_spare(outputs_of(frames[0], a), resumed);
