@@ -8,6 +8,7 @@
 
 #include "commands/arguments/option_text.hpp"
 #include "commands/arguments/output_paths.hpp"
+#include "commands/render/render_values.hpp"
 #include "dapple/error.hpp"
 
 namespace dapple {

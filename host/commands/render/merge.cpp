@@ -15,6 +15,7 @@
 #include "commands/interruption.hpp"
 #include "commands/render/frames.hpp"
 #include "commands/render/render_arguments.hpp"
+#include "commands/render/render_values.hpp"
 #include "commands/statistics_text.hpp"
 #include "commands/tell.hpp"
 #include "dapple/error.hpp"

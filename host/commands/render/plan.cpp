@@ -20,6 +20,7 @@
 #include "commands/interruption.hpp"
 #include "commands/progress.hpp"
 #include "commands/render/render_arguments.hpp"
+#include "commands/render/render_values.hpp"
 #include "commands/render/shot.hpp"
 #include "commands/statistics_text.hpp"
 #include "commands/tell.hpp"

@@ -19,6 +19,7 @@
 #include "commands/progress.hpp"
 #include "commands/render/frames.hpp"
 #include "commands/render/render_arguments.hpp"
+#include "commands/render/render_values.hpp"
 #include "commands/render/shot.hpp"
 #include "commands/statistics_text.hpp"
 #include "commands/tell.hpp"

@@ -1,4 +1,5 @@
-// The arguments of `dapple render`. In: text as typed. Out: RenderOptions.
+// The arguments of `dapple render`, and the options that take them. In: the command line. Out: the
+// arguments as typed; render_values.hpp tells what they mean.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -6,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "dapple/film.hpp"
 #include "dapple/options.hpp"
 #include "dapple/scene.hpp"
 
@@ -42,23 +42,5 @@ void add_render_options(CLI::App& app, RenderArguments& arguments);
 
 /// Those of the files that are written beside the image, and of its format.
 void add_file_options(CLI::App& app, RenderArguments& arguments);
-
-/// Throws Error usage if options of the PNG are wrong, or there is none that they are for.
-void check_png(const RenderArguments& arguments);
-
-/// Whether the file is a part, FILE.dapple, and not an image.
-bool is_part_path(const std::string& path);
-
-double frames_per_second(const RenderArguments& arguments);
-
-/// Moments of the open shutter: 1 without --shutter.
-int shutter_times(const RenderArguments& arguments);
-
-/// The k-th moment of a frame at `seconds`: the middle of the k-th part of the shutter interval.
-double shutter_seconds(const RenderArguments& arguments, double seconds, int k);
-
-/// Both throw Error usage naming the option.
-RenderOptions to_options(const RenderArguments& arguments);
-ExrFormat to_format(const RenderArguments& arguments);
 
 }  // namespace dapple
