@@ -115,6 +115,7 @@ void add_point_options(CLI::App& app, Arguments& a) {
                  "this in each column before it is corrected; 0: take --footprint. Without it and "
                  "--footprint: a smaller footprint if the correction leaves more in single values "
                  "than their noise")
+      ->check(of_values("0..1"))
       ->type_name("FLOAT");
   app.add_option("--seed", o.seed, "Seed of the random numbers: another seed gives other noise")
       ->capture_default_str();

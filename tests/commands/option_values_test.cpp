@@ -111,6 +111,25 @@ TEST_F(OptionValues, OfWholeNumbersTheHelpTellsThoseThatAreTaken) {
   }
 }
 
+TEST_F(OptionValues, OfNumbersWithARangeTheErrorTellsIt) {
+  std::size_t count = 0;
+  for (const auto& [command, rest] : kCommands) {
+    for (const Option& option : options_in(dapple(command + " --help").out)) {
+      const std::size_t dots = option.values.find("..");
+      if (option.type != "FLOAT" || dots == std::string::npos) continue;
+      SCOPED_TRACE(command + " " + option.flag);
+      const std::string range =
+          " from " + option.values.substr(0, dots) + " to " + option.values.substr(dots + 2);
+      const std::string begin = command + " " + rest + " " + option.flag + "=";
+      expect_failure(dapple(begin + "word"), 2, "expected a number" + range);
+      const std::string beyond = "2e+30";  // than any of them
+      expect_failure(dapple(begin + beyond), 2, option.flag);
+      ++count;
+    }
+  }
+  EXPECT_GT(count, 12u);
+}
+
 TEST_F(OptionValues, OutOfRangeAreNamedAsTyped) {
   const std::pair<const char*, const char*> cases[] = {
       {"--spp 99999999999999999999",

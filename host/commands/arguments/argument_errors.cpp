@@ -23,6 +23,8 @@ std::string expected_values(const CLI::App& app, const std::string& flag, const 
   std::smatch values;
   if (std::regex_match(type, values, std::regex("U?INT:(-?\\d+)\\.\\.(\\d+)")))
     return fmt::format("a whole number from {} to {}", values[1].str(), values[2].str());
+  if (std::regex_match(type, values, std::regex("FLOAT:(.*)\\.\\.(.*)")))
+    return fmt::format("a number from {} to {}", values[1].str(), values[2].str());
   if (std::regex_match(type, values, std::regex("U?INT:\\{(.*)\\}")))
     return "one of " + std::regex_replace(values[1].str(), std::regex(","), ", ");
   if (type == "UINT")
@@ -35,7 +37,7 @@ std::string expected_values(const CLI::App& app, const std::string& flag, const 
 
 bool takes_number(const CLI::Option& option) {
   const std::string type = option.get_type_name();
-  return type.starts_with("UINT") || type.starts_with("INT") || type == "FLOAT";
+  return type.starts_with("UINT") || type.starts_with("INT") || type.starts_with("FLOAT");
 }
 
 /// "--output" of "-o,--output".

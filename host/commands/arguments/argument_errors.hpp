@@ -9,8 +9,8 @@ namespace dapple {
 /// What is wrong, and what is expected. `app`: the program, whose parsing threw `error`.
 std::string argument_error_text(const CLI::App& app, const CLI::ParseError& error);
 
-/// Tells the values of an option, "1..100" or "{0,1,2}", in the help and where the argument is no
-/// number. The command checks them.
+/// Does not check: it tells the values of an option, "1..100" or "{0,1,2}", in the help and where
+/// the argument is no number. The command refuses others.
 CLI::Validator of_values(const std::string& values);
 
 /// Makes it an error to give an option of the command an empty value, which CLI11 reads as 0 or as

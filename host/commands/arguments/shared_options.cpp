@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "commands/arguments/argument_errors.hpp"
 #include "dapple/error.hpp"
 
 namespace dapple {
@@ -18,6 +19,7 @@ CLI::Option* add_prefiltering_options(CLI::App& app, std::string& estimator, flo
              "--footprint", footprint,
              "Scale of ray footprints, the areas that rays represent: larger is faster and less "
              "noisy, smaller is usually closer to exact, 0 is exact")
+          ->check(of_values("0..1000000"))
           ->capture_default_str();
   app.add_option("--report-bias", report_bias,
                  "Part of the prefiltered rays to trace exactly, too, to report the bias: a "
@@ -31,6 +33,7 @@ void add_max_bias_option(CLI::App& app, float& max_bias) {
   app.add_option("--max-bias", max_bias,
                  "Choose the largest footprint, from --footprint down to 0, whose bias is below "
                  "this in AO and in each light; 0: take --footprint")
+      ->check(of_values("0..1"))
       ->capture_default_str();
 }
 
@@ -43,10 +46,12 @@ void add_opacity_option(CLI::App& app, std::vector<std::string>& opacity) {
 void add_ao_range_options(CLI::App& app, float& distance, float& falloff) {
   app.add_option("--ao-distance", distance,
                  "Surfaces farther than this, in metres, don't occlude; 0: no limit")
+      ->check(of_values("0..1e+30"))
       ->capture_default_str();
   app.add_option("--ao-falloff", falloff,
                  "Exponent p: a surface at distance t has weight (1 - t/D)^p, D = --ao-distance; "
                  "0: cutoff at D")
+      ->check(of_values("0..100"))
       ->capture_default_str();
 }
 

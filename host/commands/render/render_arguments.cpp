@@ -20,11 +20,13 @@ void add_sampling_options(CLI::App& app, RenderArguments& a) {
                  "Sample each pixel until its estimated standard error is below this; 0: no "
                  "target. A light's error is divided by the largest irradiance that it gives "
                  "anywhere without occlusion. Not with --target-rmse")
+      ->check(of_values("0..1"))
       ->capture_default_str();
   app.add_option("--target-rmse", o.target_rmse,
                  "Sample until the estimated RMSE over all pixels is below this in each pass; 0: "
                  "no target. Faster than --target-error, but the error varies more from pixel to "
                  "pixel. Not with --target-error")
+      ->check(of_values("0..1"))
       ->capture_default_str();
   app.add_option("--max-spp", o.max_spp,
                  "With a target: the largest number of camera rays per pixel")
@@ -51,12 +53,14 @@ void add_sampling_options(CLI::App& app, RenderArguments& a) {
                  "With --estimator exact: rays of less transmittance than this end at random, and "
                  "the others count for them: the same mean, sooner, with a little more noise; 0: "
                  "none ends")
+      ->check(of_values("0..1"))
       ->capture_default_str();
   app.add_option(
          "--max-bias", o.max_bias,
          "Choose the largest footprint, from --footprint down to 0, whose bias is below this in "
          "each layer; 0: take --footprint. Without it, --footprint, --frame and a target: a "
          "smaller footprint if a part of the rays shows that the bias is above 0.002")
+      ->check(of_values("0..1"))
       ->type_name("FLOAT");
 }
 
@@ -75,10 +79,11 @@ void add_layer_options(CLI::App& app, RenderArguments& a) {
       ->check(of_values("{1,2,4,8,16,32,64}"))
       ->capture_default_str();
   app.add_option(
-      "--ambient", o.ambient,
-      "Radiance of a uniform sky that lights the RGBA picture through AO. Default: 1 without "
-      "lights, 0 with a dome, otherwise a tenth of the radiance that the lights give white "
-      "surfaces without occlusion (90th percentile of the pixels)");
+         "--ambient", o.ambient,
+         "Radiance of a uniform sky that lights the RGBA picture through AO. Default: 1 without "
+         "lights, 0 with a dome, otherwise a tenth of the radiance that the lights give white "
+         "surfaces without occlusion (90th percentile of the pixels)")
+      ->check(of_values("0..1e+30"));
   app.add_option("--normals", a.normals,
                  "shading: the normals of the meshes; geometric: flat facets")
       ->capture_default_str();
@@ -117,10 +122,12 @@ void add_scene_options(CLI::App& app, RenderArguments& a) {
                  "straight up or down")
       ->needs(&look_from);
   app.add_option("--fov", a.fov,
-                 "Vertical field of view, degrees; default: the camera's own, or 40");
+                 "Vertical field of view, degrees; default: the camera's own, or 40")
+      ->check(of_values("0.01..179"));
   app.add_option("--aperture", o.aperture,
                  "Depth of field: radius of the camera's lens, metres; 0: everything is sharp; "
-                 "default: the camera's own");
+                 "default: the camera's own")
+      ->check(of_values("0..1000000"));
   app.add_option(
       "--focus-distance", o.focus_distance,
       "Distance along the view direction that is sharp, metres; default: the camera's own, "
