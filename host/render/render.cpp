@@ -18,6 +18,7 @@
 #include "film/cryptomatte.hpp"
 #include "film/film_memory.hpp"
 #include "film/layers.hpp"
+#include "film/opacity_settings.hpp"
 #include "passes/kernel_list.hpp"
 #include "render/bias/bias_report.hpp"
 #include "render/bias/footprint_pilot.hpp"
@@ -90,9 +91,7 @@ FilmMetadata metadata(const Scene& scene, const View& view, const RenderOptions&
   }
   set("ao_distance", options.ao_distance);
   set("ao_falloff", options.ao_falloff);
-  for (const auto& [material, value] : options.opacity) {
-    m.settings.emplace_back("opacity_" + layer_name(material), fmt::format("{}", value));
-  }
+  for (auto& setting : opacity_settings(options.opacity)) m.settings.push_back(std::move(setting));
   m.settings.insert(m.settings.end(), control.settings.begin(), control.settings.end());
   return m;
 }

@@ -23,6 +23,13 @@ def number(name: str, value: float) -> float:
     return float(value)
 
 
+def finite(name: str, value: float) -> float:
+    result = number(name, value)
+    if not math.isfinite(result):
+        raise UsageError(f"{name} is {result:g}; it must be finite")
+    return result
+
+
 def non_negative(name: str, value: float) -> float:
     """A finite number of 0 or more."""
     result = number(name, value)

@@ -205,12 +205,17 @@ class Scene:
         degrees = _arguments.number("angular_diameter", angular_diameter)
         self._native.add_sun(towards, strength, degrees, _arguments.text("name", name))
 
-    def add_sky(self, kind: str | PathLike[str] = "uniform", irradiance: float = 1.0) -> None:
+    def add_sky(
+        self,
+        kind: str | PathLike[str] = "uniform",
+        irradiance: float = 1.0,
+        rotation: float = 0.0,
+    ) -> None:
         """Adds a sky as the light "sky".
 
         kind: "uniform", "overcast" (CIE standard overcast: Moon and Spencer, 1942) or a
         latitude-longitude image (.exr, .hdr). irradiance: on an open horizontal plane, W/m^2; for
-        an image a factor.
+        an image a factor. rotation: of the image about +Y, degrees, from +Z towards +X.
 
         >>> tree = dapple.load("scene:tree?leaves=100")
         >>> tree.add_sky("overcast", irradiance=120)
@@ -219,7 +224,8 @@ class Scene:
         True
         """
         strength = _arguments.non_negative("irradiance", irradiance)
-        self._native.add_sky(_arguments.path("kind", kind), strength)
+        degrees = _arguments.finite("rotation", rotation)
+        self._native.add_sky(_arguments.path("kind", kind), strength, degrees)
 
     def save(self, path: str | PathLike[str]) -> None:
         """Writes meshes, instances, materials without textures, and cameras as one .glb file.

@@ -29,8 +29,11 @@ V3f to_vector(const Vector& v) { return {v[0], v[1], v[2]}; }
 Vector from_vector(const V3f& v) { return {v.x, v.y, v.z}; }
 
 SceneOnDevice load(const std::string& path, std::optional<double> time,
-                   const std::string& animation, bool allow_outside) {
+                   const std::string& animation, bool allow_outside, float light_radius,
+                   float line_radius) {
   SceneOptions options;
+  options.light_radius = light_radius;
+  options.line_radius = line_radius;
   options.time = time;
   options.animation = animation;
   options.allow_outside = allow_outside;
@@ -113,7 +116,8 @@ void add_sun(Scene& scene, const Vector& towards, float irradiance, float degree
   scene.lights.push_back(light);
 }
 
-void add_sky(Scene& scene, const std::string& kind, float irradiance) {
+/// `rotation`: degrees, from +Z towards +X.
+void add_sky(Scene& scene, const std::string& kind, float irradiance, double rotation) {
   Light sky;
   if (kind == "uniform" || kind == "overcast") {
     sky = kind == "uniform" ? uniform_sky() : overcast_sky();
@@ -121,6 +125,7 @@ void add_sky(Scene& scene, const std::string& kind, float irradiance) {
     sky = dome_light("sky", kind);
   }
   sky.radiance *= irradiance;
+  sky.rotation = static_cast<float>(std::remainder(rotation, 360.0) * 3.141592653589793 / 180);
   scene.lights.push_back(sky);
 }
 
@@ -213,10 +218,10 @@ void bind_scene(nb::module_& module) {
           nb::arg("direction"), nb::arg("irradiance"), nb::arg("angular_diameter"), nb::arg("name"))
       .def(
           "add_sky",
-          [](SceneOnDevice& s, const std::string& kind, float irradiance) {
-            add_sky(s.change(), kind, irradiance);
+          [](SceneOnDevice& s, const std::string& kind, float irradiance, double rotation) {
+            add_sky(s.change(), kind, irradiance, rotation);
           },
-          nb::arg("kind"), nb::arg("irradiance"))
+          nb::arg("kind"), nb::arg("irradiance"), nb::arg("rotation"))
       .def(
           "write_glb",
           [](const SceneOnDevice& s, const std::string& path) {
@@ -226,7 +231,7 @@ void bind_scene(nb::module_& module) {
           },
           nb::arg("path"));
   module.def("load", load, nb::arg("path"), nb::arg("time").none(), nb::arg("animation"),
-             nb::arg("allow_outside"));
+             nb::arg("allow_outside"), nb::arg("light_radius"), nb::arg("line_radius"));
   module.def("from_arrays", from_arrays, nb::arg("vertices"), nb::arg("triangles"),
              nb::arg("known"), nb::arg("materials"));
 }

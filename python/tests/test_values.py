@@ -48,6 +48,30 @@ def test_skies_have_their_irradiance_on_open_ground(plate: dapple.Scene) -> None
     assert found.unoccluded[0, 0] == pytest.approx(120, rel=0.01)
 
 
+def test_skies_turn_as_those_of_the_program(
+    program: str, tree: dapple.Scene, ground: np.ndarray, tmp_path: Path
+) -> None:
+    """Of an image that is white in one half, grey in the other."""
+    sky, points, out = (tmp_path / name for name in ("half.hdr", "points.npy", "out.npy"))
+    pixels = np.full((4, 8, 4), 128, np.uint8)  # red, green, blue, exponent
+    pixels[:, 4:, 3] = 129
+    sky.write_bytes(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 8\n" + pixels.tobytes())
+    np.save(points, ground)
+    arguments = [program, "points", tree._native.source, "--at", points, "-o", out, "-q"]
+    subprocess.run([*arguments, "--sky", sky, "--sky-rotation", "90"], check=True)
+    table = np.load(out)
+    straight = dapple.load(tree._native.source)
+    straight.add_sky(sky)
+    tree.add_sky(sky, rotation=90)
+    columns = tree.measure(ground)
+    names = [name for name in columns if name.startswith("sky")]
+    assert names
+    for name in names:
+        np.testing.assert_array_equal(table[name], columns[name])
+    before = straight.measure(ground)
+    assert any((before[name] != columns[name]).any() for name in names)
+
+
 def test_measure_has_the_columns_of_the_program(
     program: str, tree: dapple.Scene, ground: np.ndarray, tmp_path: Path
 ) -> None:

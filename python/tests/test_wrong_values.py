@@ -59,6 +59,9 @@ WRONG: dict[str, Call] = {
     "kind is 3": lambda s: s.add_sky(3),  # type: ignore[arg-type]
     "irradiance is nan": lambda s: s.add_sky(irradiance=NAN),
     "irradiance is -1": lambda s: s.add_sky(irradiance=-1),
+    "rotation is inf": lambda s: s.add_sky(rotation=float("inf")),
+    "light-radius is 0": lambda s: dapple.load("scene:tree?leaves=9", light_radius=0),
+    "line_radius is 'x'": lambda s: dapple.load("scene:tree?leaves=9", line_radius="x"),  # type: ignore[arg-type]
     "path is 3": lambda s: s.add_lights(3),  # type: ignore[arg-type]
     "vertices[0] is not finite": lambda s: from_arrays([[0, 0, NAN]] * 3, [[0, 1, 2]]),
     "vertices has the type object": lambda s: from_arrays(None, TRIANGLES),  # type: ignore[arg-type]

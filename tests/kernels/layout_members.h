@@ -58,9 +58,10 @@
   MEMBER(LightRecord, environment_width) MEMBER(LightRecord, environment_height)             \
   MEMBER(LightRecord, rotation) MEMBER(LightRecord, sequence)                                \
   STRUCT(EmitterTriangle)                                                                    \
-  MEMBER(EmitterTriangle, vertex) MEMBER(EmitterTriangle, cumulative)                        \
-  MEMBER(EmitterTriangle, edge1) MEMBER(EmitterTriangle, spare1)                             \
-  MEMBER(EmitterTriangle, edge2) MEMBER(EmitterTriangle, spare2)                             \
+  MEMBER(EmitterTriangle, vertex) MEMBER(EmitterTriangle, area)                              \
+  MEMBER(EmitterTriangle, edge1) MEMBER(EmitterTriangle, left_share)                         \
+  MEMBER(EmitterTriangle, edge2) MEMBER(EmitterTriangle, spare)                              \
+  MEMBER(EmitterTriangle, left) MEMBER(EmitterTriangle, right)                               \
   STRUCT(SceneParams)                                                                        \
   MEMBER(SceneParams, root) MEMBER(SceneParams, has_top)                                     \
   STRUCT(OcclusionParams)                                                                    \

@@ -78,7 +78,7 @@ __kernel void cone_directions(__global const float* squares, __global const floa
           item, directions);
 }
 
-/* Direction, distance and solid angle of `count` samples of a light seen from the origin. Each item
+/* Direction, distance and solid angle of `count` samples of a light seen from the origin, normal +Y. Each item
    uses the next of sixteen lanes. */
 __kernel void light_samples(__global const LightRecord* lights,
                             __global const EmitterTriangle* emitters, __global float* directions,
@@ -89,8 +89,10 @@ __kernel void light_samples(__global const LightRecord* lights,
   const float2 u = sample_2d(0, item, DAPPLE_PAIR_LIGHT, 1);
   PointRays rays;
   LightSamples samples;
-  for (uint axis = 0; axis < 3u; ++axis)
-    rays.origin[axis].v = rays.normal[axis].v = (float16)(0.0f);
+  for (uint axis = 0; axis < 3u; ++axis) {
+    rays.origin[axis].v = (float16)(0.0f);
+    rays.normal[axis].v = (float16)(axis == 1u ? 1.0f : 0.0f);
+  }
   rays.u.v = rays.v.v = (float16)(0.5f);
   rays.u.f[lane] = u.x;
   rays.v.f[lane] = u.y;

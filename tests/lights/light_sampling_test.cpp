@@ -130,5 +130,50 @@ TEST(LightSampling, AMeshIntegratesToTheSumOfItsTriangles) {
   }
 }
 
+/// Triangles of a hand's breadth among which the receiver lies, all above its horizon.
+Scene leaves_that_glow(std::uint32_t count) {
+  Scene scene = mesh_light_scene(M44f(), true);
+  Mesh& mesh = scene.meshes[0];
+  mesh = {};
+  std::uint32_t random = 1;
+  const auto number = [&] {
+    random = random * 1664525u + 1013904223u;
+    return static_cast<float>(random >> 8) / 16777216.0f;
+  };
+  for (std::uint32_t t = 0; t < count; ++t) {
+    const V3f at(number() * 8 - 4, number() * 4 + 0.06f, number() * 8 - 4);
+    for (std::uint32_t c = 0; c < 3; ++c) {
+      mesh.positions.push_back(at + V3f(number() - 0.5f, number() - 0.5f, number() - 0.5f) * 0.1f);
+      mesh.indices.push_back(3 * t + c);
+    }
+    mesh.materials.push_back(0);
+  }
+  return scene;
+}
+
+TEST(LightSampling, OfManyTrianglesThoseAreChosenThatBringMuch) {
+  const Scene scene = leaves_that_glow(5000);
+  const Mesh& mesh = scene.meshes[0];
+  double expected = 0, area = 0, squares_by_area = 0;
+  for (std::size_t t = 0; t < mesh.primitive_count(); ++t) {
+    const V3d a(mesh.positions[3 * t]), b(mesh.positions[3 * t + 1]), c(mesh.positions[3 * t + 2]);
+    const double one = polygon_irradiance({a, b, c}), of_triangle = (b - a).cross(c - a).length();
+    expected += one;
+    area += of_triangle;
+    squares_by_area += one * one / of_triangle;
+  }
+  squares_by_area *= area;  // the mean square of samples that choose triangles by area, at least
+  const Samples samples = light_samples(scene);
+  EXPECT_NEAR(samples.irradiance(), expected, 0.01 * expected);
+  double squares = 0, largest = 0;
+  for (std::size_t i = 0; i < samples.directions.size(); ++i) {
+    const double one = samples.solid_angles[i] * std::max(0.0f, samples.directions[i].y);
+    squares += one * one / static_cast<double>(samples.directions.size());
+    largest = std::max(largest, one);
+  }
+  EXPECT_LT(squares, 0.7 * squares_by_area);
+  EXPECT_LT(largest, 50 * expected);
+}
+
 }  // namespace
 }  // namespace dapple

@@ -142,7 +142,7 @@ MUTATIONS = [
         "  const float along = z * dome->cosine - x * dome->sine;",
         r"^Dome\."),
     Mutation(
-        "one-sided-mesh-light-shines-back", "kernels/lights/light_samples.clh",
+        "one-sided-mesh-light-shines-back", "kernels/lights/mesh_sample.clh",
         "fmax(two_sided ? fabs(cosine) : cosine, 0.0f)",
         "fabs(cosine)",
         r"^(EmissiveMesh|DiskLight|Light)\."),

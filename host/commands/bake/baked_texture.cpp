@@ -11,6 +11,7 @@
 #include "bake/texture/uv_overlap.hpp"
 #include "dapple/film.hpp"
 #include "film/exr/exr_output.hpp"
+#include "film/opacity_settings.hpp"
 #include "film/preview/png.hpp"
 #include "sampling/bias_estimate.hpp"
 
@@ -140,8 +141,7 @@ FilmMetadata metadata_of(const BakeStatistics& statistics, const std::string& so
   if (options.light) set("light_rays", options.light_rays);
   set("ao_distance", options.distance);
   set("ao_falloff", options.falloff);
-  for (const auto& [material, value] : options.opacity)
-    set("opacity_" + layer_name(material), value);
+  for (auto& setting : opacity_settings(options.opacity)) m.settings.push_back(std::move(setting));
   for (const auto& [layer, bias] : statistics.bias) set("bias." + layer, bias_text(bias));
   return m;
 }

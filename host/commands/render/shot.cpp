@@ -9,6 +9,7 @@
 #include "camera/view.hpp"
 #include "commands/arguments/shared_options.hpp"
 #include "dapple/error.hpp"
+#include "film/opacity_settings.hpp"
 #include "scene/ground.hpp"
 #include "scene/lights/default_lights.hpp"
 
@@ -42,11 +43,8 @@ Shot::Shot(const RenderArguments& a, RenderOptions& options) : arguments_(a), op
 }
 
 std::vector<std::pair<std::string, std::string>> Shot::settings() const {
-  std::vector<std::pair<std::string, std::string>> settings;
-  if (!moving_) return settings;  // the renderer applies the opacities, and names them
-  for (const auto& [material, value] : options_.opacity)
-    settings.emplace_back("opacity_" + layer_name(material), fmt::format("{}", value));
-  return settings;
+  if (!moving_) return {};  // the renderer applies the opacities, and names them
+  return opacity_settings(options_.opacity);
 }
 
 Scene Shot::frame(std::optional<double> seconds) {

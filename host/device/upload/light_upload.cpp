@@ -8,6 +8,7 @@
 #include "bvh/opacity/texture_integrals.hpp"
 #include "bvh/opacity/triangle_opacity.hpp"
 #include "dapple/error.hpp"
+#include "device/upload/emitter_tree.hpp"
 #include "scene/lights/rect_axes.hpp"
 
 namespace dapple {
@@ -58,11 +59,10 @@ std::vector<float> mean_opacities(const Scene& scene, const OpaqueTexels& texels
 }
 
 /// Appends the triangles of every instance that emits for `light`. Returns the area in m^2 that
-/// shines, by which they are chosen.
+/// shines.
 double append_emitters(const Scene& scene, const OpaqueTexels& texels, int light,
                        std::vector<EmitterTriangle>& emitters) {
-  const std::size_t first = emitters.size();
-  std::vector<double> areas;
+  std::vector<EmitterTriangle> of_light;
   double total = 0;
   for (const Instance& instance : scene.instances) {
     if (instance.light != light) continue;
@@ -80,20 +80,20 @@ double append_emitters(const Scene& scene, const OpaqueTexels& texels, int light
       if (!(area > 0)) continue;
       EmitterTriangle triangle{};
       store(vertex, triangle.vertex);
+      triangle.area = static_cast<float>(area);
       // A mirrored instance reverses the winding of its triangles. The swapped edges keep the
       // normal on the front face, as glTF defines it.
       const bool mirrored = Imath::M44d(instance.to_world).determinant() < 0;
       store(mirrored ? edge2 : edge1, triangle.edge1);
       store(mirrored ? edge1 : edge2, triangle.edge2);
-      emitters.push_back(triangle);
+      of_light.push_back(triangle);
       total += area;
-      areas.push_back(total);
     }
   }
-  for (std::size_t i = 0; i < areas.size(); ++i) {
-    emitters[first + i].cumulative = static_cast<float>(areas[i] / total);
-  }
-  if (areas.empty()) emitters.push_back({});  // kernels expect a triangle; this one gives no light
+  if (of_light.empty()) of_light.push_back({});  // kernels expect one; this one gives no light
+  divide_long_emitters(of_light);
+  order_emitters(of_light);
+  emitters.insert(emitters.end(), of_light.begin(), of_light.end());
   return total;
 }
 

@@ -10,7 +10,7 @@
 namespace dapple {
 
 /// Appends one record for each light of the scene, in order, and the triangles of its mesh lights,
-/// in world space with their cumulative shares of the light's area.
+/// in world space, in the order of their tree.
 void pack_lights(const Scene& scene, std::vector<LightRecord>& records,
                  std::vector<EmitterTriangle>& emitters);
 

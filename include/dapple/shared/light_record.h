@@ -38,20 +38,23 @@ typedef struct LightRecord {
   uint sequence;  /* of random numbers; lights with the same one have correlated noise */
 } LightRecord;
 
-/* A triangle of a mesh light in world space. `cumulative` is the sum of the triangles' areas up to
-   and including this one, as a fraction of the light's area; the last one is 1. */
+/* A triangle of a mesh light in world space. The triangles of a light are the leaves of a binary
+   tree, in order: its root is all of them, and a node of triangles [a, b) has the children [a, m)
+   and [m, b), m = (a + b) / 2. Triangle m says where they are; none has two such nodes, the first
+   has none. */
 typedef struct EmitterTriangle {
   float vertex[3];
-  float cumulative;
+  float area; /* that shines, square metres: times the mean opacity */
   float edge1[3];
-  float spare1;
+  float left_share; /* of the node's area in [a, m) */
   float edge2[3];
-  float spare2;
+  float spare;
+  float left[6], right[6]; /* boxes around the children: centre, half sides */
 } EmitterTriangle;
 
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(LightRecord) == 108);
-static_assert(sizeof(EmitterTriangle) == 48);
+static_assert(sizeof(EmitterTriangle) == 96);
 }  // namespace dapple
 #endif
 
