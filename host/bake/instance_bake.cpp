@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "bake/samples/placed_areas.hpp"
 #include "bake/two_sided.hpp"
 #include "bake/vertex_bake.hpp"
 #include "sampling/random_choice.hpp"
@@ -71,6 +72,7 @@ class PointsOfMesh {
 struct InstanceSlice {
   std::vector<SurfaceSample> samples;
   std::vector<std::uint32_t> placement, instance;
+  std::vector<float> weight;  ///< area of the surface there over that by which it was chosen
   Placements placements;
 };
 
@@ -87,7 +89,7 @@ class InstanceSums {
       if (found.is_inside(s))
         ++of_instance_[slice.instance[s]].inside;
       else
-        add(slice.instance[s], part_of(found, s, slice.samples[s].back ? 0.5f : 0.0f));
+        add(slice, s, part_of(found, s, slice.samples[s].back ? 0.5f : 0.0f));
     }
   }
 
@@ -109,7 +111,7 @@ class InstanceSums {
       value.scalar = 0.5f * (value.scalar + second.scalar);
       for (std::size_t l = 0; l < light_.size(); ++l)
         value.light[l] = (value.light[l] + second.light[l]) * 0.5f;
-      add(slice.instance[s], value);
+      add(slice, s, value);
     }
   }
 
@@ -122,27 +124,33 @@ class InstanceSums {
   }
   /// 0 if all of the instance is inside closed geometry.
   [[nodiscard]] double mean(std::uint32_t instance) const {
-    return of_instance_[instance].sum / std::max(1u, of_instance_[instance].count);
+    const Sums& of = of_instance_[instance];
+    return of.count > 0 ? of.sum / of.weight : 0;
   }
   [[nodiscard]] V3f mean_light(std::size_t light, std::uint32_t instance) const {
-    return light_[light][instance] / static_cast<float>(std::max(1u, of_instance_[instance].count));
+    const Sums& of = of_instance_[instance];
+    return of.count > 0 ? light_[light][instance] / static_cast<float>(of.weight) : V3f(0);
   }
   /// The squared standard error of a mean of independent samples, relative to the largest
   /// unoccluded value so far (of AO: 1). That samples are spread evenly makes it smaller.
   [[nodiscard]] double squared_error(std::uint32_t instance) const {
     const Sums& of = of_instance_[instance];
     if (of.count == 0 || !(largest_ > 0)) return 0;
-    const double n = of.count, deviations = of.sum_squares - of.sum * of.sum / n;
+    const double n = of.count, mean = of.sum / of.weight;
     if (of.count == 1) {  // no more than of values that are all 0 or the largest
-      const double value = std::min(of.sum / double{largest_}, 1.0);
+      const double value = std::min(mean / double{largest_}, 1.0);
       return value * (1 - value);
     }
-    return std::max(deviations, 0.0) / (n * (n - 1)) / (double{largest_} * double{largest_});
+    const double deviations = of.squares - mean * (2 * of.products - mean * of.weight_squares);
+    return std::max(deviations, 0.0) * n / ((n - 1) * of.weight * of.weight) /
+           (double{largest_} * double{largest_});
   }
 
  private:
   struct Sums {
-    double sum = 0, sum_squares = 0;
+    double weight = 0, sum = 0;  ///< of weights, and of these times values
+    /// Sums of squared weights, of these times values, and times squared values.
+    double weight_squares = 0, products = 0, squares = 0;
     std::uint32_t count = 0, inside = 0;  ///< samples that count, and those that do not
   };
   /// The value of a sample.
@@ -159,12 +167,18 @@ class InstanceSums {
                            found.back_light[sample * light_.size() + l] * back);
     return part;
   }
-  void add(std::uint32_t instance, const Part& part) {
+  void add(const InstanceSlice& slice, std::size_t sample, const Part& part) {
+    const std::uint32_t instance = slice.instance[sample];
     Sums& of = of_instance_[instance];
-    of.sum += double{part.scalar};
-    of.sum_squares += double{part.scalar} * double{part.scalar};
+    const double weight = double{slice.weight[sample]}, value = double{part.scalar};
+    of.weight += weight;
+    of.sum += weight * value;
+    of.weight_squares += weight * weight;
+    of.products += weight * weight * value;
+    of.squares += weight * weight * value * value;
     ++of.count;
-    for (std::size_t l = 0; l < light_.size(); ++l) light_[l][instance] += part.light[l];
+    for (std::size_t l = 0; l < light_.size(); ++l)
+      light_[l][instance] += part.light[l] * slice.weight[sample];
   }
 
   std::vector<Sums> of_instance_;
@@ -232,7 +246,10 @@ class InstanceRounds {
       const std::uint32_t mesh = scene_.instances[i].mesh;
       const auto [found, is_new] = of_mesh.try_emplace(mesh);
       if (is_new) found->second = points_[mesh].next(count, one_group_);
+      const PlacedAreas areas(scene_.instances[i].to_world);
       for (const SurfaceSample& sample : found->second) {
+        const bool is_flat = sample.geometric == V3f(0, 0, 0);
+        slice.weight.push_back(areas.scale_of(is_flat ? sample.normal : sample.geometric));
         slice.samples.push_back(sample);
         slice.placement.push_back(static_cast<std::uint32_t>(slice.placements.to_world.size()));
         slice.instance.push_back(i);

@@ -51,11 +51,24 @@ uchar code_of(float value, float greatest) {
   return static_cast<uchar>(std::max(1l, std::lround(255.0f * std::sqrt(value / greatest))));
 }
 
+/// Gives a segment that is shorter than a step of the grid the length of one, along its longest
+/// side: kernels divide by it.
+void lengthen(SegmentBlock& block, unsigned lane, const V3f& axis) {
+  const V3f sides(std::fabs(axis.x), std::fabs(axis.y), std::fabs(axis.z));
+  const int k = sides.x >= std::max(sides.y, sides.z) ? 0 : sides.y >= sides.z ? 1 : 2;
+  const bool up =
+      axis[k] >= 0 ? block.begin[k][lane] < DAPPLE_MAX_GRID_CODE : block.begin[k][lane] == 0;
+  block.end[k][lane] = static_cast<ushort>(block.begin[k][lane] + (up ? 1 : -1));
+}
+
 void set_lane(SegmentBlock& block, unsigned lane, const StrandSegment& segment) {
+  bool has_length = false;
   for (int axis = 0; axis < 3; ++axis) {
     block.begin[axis][lane] = grid_code(block, segment.point[0][axis], axis);
     block.end[axis][lane] = grid_code(block, segment.point[1][axis], axis);
+    has_length |= block.begin[axis][lane] != block.end[axis][lane];
   }
+  if (!has_length) lengthen(block, lane, segment.point[1] - segment.point[0]);
   set_plane(block.begin_plane, lane, segment.plane[0]);
   set_plane(block.end_plane, lane, segment.plane[1]);
   block.begin_radius[lane] = code_of(segment.radius[0], block.radius);

@@ -18,6 +18,7 @@
 #include "commands/arguments/shared_options.hpp"
 #include "commands/bake/bake_report.hpp"
 #include "commands/bake/baked_attributes.hpp"
+#include "commands/bake/baked_nodes.hpp"
 #include "commands/bake/baked_texture.hpp"
 #include "commands/bake/scene_file.hpp"
 #include "commands/bake/side_copies.hpp"
@@ -127,7 +128,7 @@ std::vector<std::string> add_to_vertices(gltf::Editor& editor, const gltf::Sourc
                                          const Scene& scene, const BakeArguments& a,
                                          const BakeResult& result) {
   const BakeTargets targets{channel_of(a), a.blend == "multiply", a.bent_channel};
-  gltf::add_attributes(editor, file, baked_attributes(file, scene, result, targets));
+  gltf::add_attributes(editor, baked_attributes(file, scene, result, targets));
   std::vector<std::string> notes;
   if (multiplies_colors(file, scene, result, targets))
     notes.emplace_back(

@@ -22,9 +22,6 @@ using gltf::SourceFile;
 /// A primitive of the file, by its mesh and its number there.
 using Primitive = std::pair<std::uint32_t, std::uint32_t>;
 
-/// The attribute of EXT_mesh_gpu_instancing that engines such as three.js show as a colour: VEC3.
-constexpr const char* kInstanceColor = "_COLOR_0";
-
 /// Scales that differ by less are one scale and its rounding.
 constexpr float kEqualScales = 1e-4f;
 
@@ -69,6 +66,17 @@ BakedMesh as_normals(const Mesh& mesh, BakedMesh baked, const Imath::M33f& metri
     if (metric != Imath::M33f()) baked.bent[v].normalize();
   }
   return baked;
+}
+
+/// Meshes of the scene whose skinned vertices are mirrored along x, and whose node mirrors them
+/// back, so that their fronts are those that glTF says.
+std::vector<bool> mirrored_skins(const SourceFile& file, const Scene& scene) {
+  std::vector<bool> mirrored(scene.meshes.size());
+  for (const Instance& instance : scene.instances)
+    if (instance.node >= 0 && Imath::M44d(instance.to_world).determinant() < 0 &&
+        file.has_skin(static_cast<std::uint32_t>(instance.node)))
+      mirrored[instance.mesh] = true;
+  return mirrored;
 }
 
 /// Sums over the meshes of a scene that show the same vertices of the file: poses and placements.
@@ -199,8 +207,6 @@ NewAttribute bent_attribute(const VertexSums& sums, const std::string& name) {
   return attribute;
 }
 
-std::string light_attribute_name(const std::string& light) { return "_LIGHT_" + light; }
-
 NewAttribute light_attribute(const VertexSums& sums, std::size_t light, const std::string& name) {
   NewAttribute attribute;
   attribute.name = name;
@@ -227,66 +233,6 @@ NewAttribute ao_attribute(const SourceFile& file, const Primitive& at, const Ver
   return attribute;
 }
 
-/// Twice the areas of the meshes of a scene, in object space; 0 of strands.
-std::vector<double> areas_of_meshes(const Scene& scene) {
-  std::vector<double> areas;
-  for (const Mesh& mesh : scene.meshes) {
-    double area = 0;
-    for (std::size_t t = 0; t < mesh.primitive_count() && !mesh.has_strands(); ++t)
-      if (has_area(mesh, t)) area += double{area_vector(mesh, t).length()};
-    areas.push_back(area);
-  }
-  return areas;
-}
-
-/// Values like `kind`, one or more components of value(instance, component) each. The meshes that a
-/// node places together, such as its primitives that emit and those that do not, count by their
-/// areas. Nodes whose instances are all scaled to zero have none.
-template <class Value>
-std::vector<gltf::NodeValues> means_of_nodes(const Scene& scene, const gltf::NodeValues& kind,
-                                             Value value) {
-  const std::vector<double> areas = areas_of_meshes(scene);
-  struct NodeSums {
-    std::vector<double> weights, values;  // by placement; by placement and component
-  };
-  std::map<int, NodeSums> sums;
-  std::map<std::pair<int, std::uint32_t>, std::size_t> placements;  // of a node and mesh so far
-  std::set<int> placed;
-  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
-    const Instance& instance = scene.instances[i];
-    if (instance.node < 0 || scene.meshes[instance.mesh].has_strands()) continue;
-    if (is_invertible(instance.to_world)) placed.insert(instance.node);
-    NodeSums& sum = sums[instance.node];
-    const std::size_t placement = placements[{instance.node, instance.mesh}]++;
-    if (sum.weights.size() <= placement) {
-      sum.weights.resize(placement + 1);
-      sum.values.resize(sum.weights.size() * kind.components);
-    }
-    const double area = std::max(areas[instance.mesh], std::numeric_limits<double>::min());
-    sum.weights[placement] += area;
-    for (std::size_t c = 0; c < kind.components; ++c)
-      sum.values[placement * kind.components + c] += area * double{value(i, c)};
-  }
-  std::vector<gltf::NodeValues> nodes;
-  for (const auto& [node, sum] : sums) {
-    if (!placed.contains(node)) continue;
-    nodes.push_back(kind);
-    nodes.back().node = static_cast<std::uint32_t>(node);
-    for (std::size_t i = 0; i < sum.values.size(); ++i)
-      nodes.back().values.push_back(
-          static_cast<float>(sum.values[i] / sum.weights[i / kind.components]));
-  }
-  return nodes;
-}
-
-/// Three equal components in place of one.
-void make_grey(gltf::NodeValues& values) {
-  std::vector<float> grey;
-  for (const float value : values.values) grey.insert(grey.end(), 3, value);
-  values.components = 3;
-  values.values = std::move(grey);
-}
-
 void refuse_used_uvs(const SourceFile& file, const VertexSource& source, const BakeChannel& channel,
                      std::uint32_t set) {
   const std::string texture = file.texture_with_uvs(source.mesh, source.primitive, set);
@@ -300,6 +246,8 @@ void refuse_used_uvs(const SourceFile& file, const VertexSource& source, const B
 }
 
 }  // namespace
+
+std::string light_attribute_name(const std::string& light) { return "_LIGHT_" + light; }
 
 void check_channel(const SourceFile& file, const Scene& scene, const BakeChannel& channel) {
   const auto set = uv_set_of(channel.attribute);
@@ -339,18 +287,25 @@ std::vector<NewAttribute> baked_attributes(const SourceFile& file, const Scene& 
                                            const BakeResult& result, const BakeTargets& targets) {
   const BakeChannel& channel = targets.channel;
   const bool to_normal = targets.bent_channel == "NORMAL";
+  const std::vector<bool> mirrored = mirrored_skins(file, scene);
   std::vector<BakedMesh> turned;
-  for (std::size_t m = 0; to_normal && m < result.meshes.size(); ++m)
-    turned.push_back(as_normals(scene.meshes[m], result.meshes[m], metric_of(scene, m)));
-  const FileSums sums(file, scene, to_normal ? turned : result.meshes, channel.attribute);
+  for (std::size_t m = 0; m < result.meshes.size(); ++m) {
+    turned.push_back(to_normal
+                         ? as_normals(scene.meshes[m], result.meshes[m], metric_of(scene, m))
+                         : result.meshes[m]);
+    for (V3f& bent : turned.back().bent) bent.x = mirrored[m] ? -bent.x : bent.x;
+  }
+  const FileSums sums(file, scene, turned, channel.attribute);
   std::vector<NewAttribute> attributes;
+  std::map<std::pair<gltf::VertexKey, std::uint32_t>, std::size_t> numbers;
   for (const auto& [primitive, from] : sums.primitives) {
+    const std::size_t shared = numbers.try_emplace(from, numbers.size()).first->second;
     const auto& [key, set] = from;
     const VertexSums& of = sums.sets.at(key)[set];
     const auto push = [&](NewAttribute attribute) {
       attribute.mesh = primitive.first;
       attribute.primitive = primitive.second;
-      attribute.set = set;
+      attribute.shared = shared;
       attributes.push_back(std::move(attribute));
     };
     push(ao_attribute(file, primitive, of, targets));
@@ -371,25 +326,6 @@ bool multiplies_colors(const SourceFile& file, const Scene& scene, const BakeRes
       if (file.colors(source.mesh, source.primitive).components >= needed) return true;
   }
   return false;
-}
-
-std::vector<gltf::NodeValues> baked_nodes(const SourceFile& file, const Scene& scene,
-                                          const BakeResult& result, const std::string& attribute) {
-  std::vector<gltf::NodeValues> nodes = means_of_nodes(
-      scene, {{}, "ao", attribute, 1, {}},
-      [&](std::size_t instance, std::size_t) { return result.instance_ao[instance]; });
-  for (gltf::NodeValues& values : nodes)
-    if (attribute == kInstanceColor && file.has_gpu_instances(values.node)) make_grey(values);
-  for (std::size_t l = 0; l < result.instance_light.size(); ++l) {
-    const std::string& name = result.light_names[l];
-    for (gltf::NodeValues& values :
-         means_of_nodes(scene, {{}, "light_" + name, light_attribute_name(name), 3, {}},
-                        [&](std::size_t instance, std::size_t component) {
-                          return result.instance_light[l][instance][static_cast<int>(component)];
-                        }))
-      nodes.push_back(std::move(values));
-  }
-  return nodes;
 }
 
 }  // namespace dapple

@@ -1,7 +1,8 @@
 // Baked values as attributes of a glTF file. In: what bake() returned, and the scene. Out:
-// attributes of primitives and values of nodes.
+// attributes of primitives.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "commands/bake/bake_arguments.hpp"
@@ -21,6 +22,9 @@ struct BakeTargets {
 /// and for one that a texture uses.
 void check_channel(const gltf::SourceFile& file, const Scene& scene, const BakeChannel& channel);
 
+/// The attribute of a light of that name.
+std::string light_attribute_name(const std::string& light);
+
 /// Throws Error usage for the attribute of a light.
 void check_channel_spares_lights(const BakeChannel& channel, const std::vector<Light>& lights);
 
@@ -32,11 +36,5 @@ std::vector<gltf::NewAttribute> baked_attributes(const gltf::SourceFile& file, c
 /// Whether baking multiplies components of a COLOR_0 that the file has.
 bool multiplies_colors(const gltf::SourceFile& file, const Scene& scene, const BakeResult& result,
                        const BakeTargets& targets);
-
-/// Of each placement of a node the mean over the meshes that it shows: AO, and lights where they
-/// were baked, as the instance attributes `attribute` and _LIGHT_NAME or the extras ao and
-/// light_NAME. An attribute _COLOR_0 is AO as a grey colour.
-std::vector<gltf::NodeValues> baked_nodes(const gltf::SourceFile& file, const Scene& scene,
-                                          const BakeResult& result, const std::string& attribute);
 
 }  // namespace dapple

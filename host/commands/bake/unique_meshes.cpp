@@ -20,13 +20,18 @@ class PlacementNodes {
     if (split == split_.end()) {
       const auto in_file = static_cast<std::uint32_t>(node);
       if (!file_.has_gpu_instances(in_file)) return node;
+      if (file_.has_instance_features(in_file)) ++without_features_;
       split = split_.emplace(node, file_.split_gpu_instances(in_file)).first;
     }
     return split->second.at(placements_[{node, mesh}]++);
   }
 
+  /// Nodes whose instances lost the numbers of their features.
+  [[nodiscard]] int without_features() const { return without_features_; }
+
  private:
   gltf::SourceFile& file_;
+  int without_features_ = 0;
   std::map<int, std::vector<int>> split_;
   std::map<std::pair<int, std::uint32_t>, std::size_t> placements_;
 };
@@ -71,6 +76,10 @@ void make_meshes_unique(gltf::SourceFile& file, Scene& scene) {
     for (VertexSource& source : scene.meshes.back().sources) source.mesh = copy->second;
   }
   remove_left_out(scene);
+  if (nodes.without_features() > 0)
+    scene.warnings.push_back(fmt::format(
+        "{}: EXT_instance_features of instances that became nodes is left out ({} of them)",
+        scene.source, nodes.without_features()));
 }
 
 }  // namespace dapple

@@ -72,23 +72,44 @@ WeightedTexel texel_of(const ColorTexture& texture, std::size_t i) {
   return {V3f(table()[texel[0]], table()[texel[1]], table()[texel[2]]) * weight, weight};
 }
 
-/// Sums of two by two texels of a finer level; of an odd size the last texel has three.
+/// Texels of a finer level that a coarse one covers along a side, and how much of them.
+class CoveredTexels {
+ public:
+  CoveredTexels(std::uint32_t at, std::uint32_t fine, std::uint32_t coarse)
+      : coarse_(coarse), begin_(std::uint64_t{at} * fine), end_(begin_ + fine) {}
+
+  [[nodiscard]] std::uint32_t first() const { return static_cast<std::uint32_t>(begin_ / coarse_); }
+  [[nodiscard]] std::uint32_t end() const {
+    return static_cast<std::uint32_t>((end_ + coarse_ - 1) / coarse_);
+  }
+  [[nodiscard]] float share(std::uint32_t texel) const {
+    const std::uint64_t from = texel * coarse_;
+    return static_cast<float>(std::min(end_, from + coarse_) - std::max(begin_, from)) /
+           static_cast<float>(coarse_);
+  }
+
+ private:
+  std::uint64_t coarse_, begin_, end_;  ///< in parts of a fine texel
+};
+
+/// Sums of the texels of a finer level that each texel covers: two by two, or parts of three where
+/// a size is odd.
 template <class Texel>
 WeightedLevel coarser(std::uint32_t width, std::uint32_t height, const Texel& texel) {
   WeightedLevel coarse{std::max(1u, width / 2), std::max(1u, height / 2), {}, {}};
   coarse.color.resize(std::size_t{coarse.width} * coarse.height);
   coarse.weight.resize(coarse.color.size());
-  const auto end = [](std::uint32_t at, std::uint32_t fine, std::uint32_t coarse_size) {
-    return at + 1 == coarse_size ? fine : 2 * at + 2;
-  };
   tbb::parallel_for(0u, coarse.height, [&](std::uint32_t y) {
+    const CoveredTexels rows(y, height, coarse.height);
     for (std::uint32_t x = 0; x < coarse.width; ++x) {
+      const CoveredTexels columns(x, width, coarse.width);
       WeightedTexel sum{V3f(0, 0, 0), 0};
-      for (std::uint32_t j = 2 * y; j < end(y, height, coarse.height); ++j) {
-        for (std::uint32_t i = 2 * x; i < end(x, width, coarse.width); ++i) {
+      for (std::uint32_t j = rows.first(); j < rows.end(); ++j) {
+        for (std::uint32_t i = columns.first(); i < columns.end(); ++i) {
           const WeightedTexel one = texel(std::size_t{j} * width + i);
-          sum.color += one.color;
-          sum.weight += one.weight;
+          const float share = rows.share(j) * columns.share(i);
+          sum.color += one.color * share;
+          sum.weight += one.weight * share;
         }
       }
       const std::size_t to = std::size_t{y} * coarse.width + x;

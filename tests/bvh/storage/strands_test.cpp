@@ -141,6 +141,37 @@ TEST(Strands, AreSeenFromTheirThickEndAsTheHalfSphereThere) {
   EXPECT_NEAR((1 - mean) * kSide * kSide * cosine, 0.3 * seen, 0.3 * seen * 5e-3);
 }
 
+// What hides the light from one side hides it from the other.
+TEST(Strands, AreSeenFromTheirThinEndAsFromTheThickOne) {
+  constexpr float kThick = 0.1f;
+  for (const float thin : {0.09f, 0.05f, 0.0f}) {
+    for (const float slant : {0.0f, 0.1f, 0.2f}) {
+      Mesh cone = strand({{0, 0, 0.2f}, {0, 0, -0.2f}});
+      cone.radii = {kThick, thin};
+      Mesh turned = cone;
+      std::swap(turned.radii[0], turned.radii[1]);
+      const auto seen = [&](const Mesh& mesh, float x) {
+        const SceneOnDevice scene(strand_scene(mesh, 0.5f));
+        return 1 - mean_transmittance(
+                       scene.trace(rays_down(0.8f, 400, V3f(x, 0, 0)), Estimator::exact));
+      };
+      const double from_thick = seen(cone, slant), from_thin = seen(turned, -slant);
+      EXPECT_NEAR(from_thin, from_thick, 0.01 * from_thick) << thin << ", " << slant;
+    }
+  }
+}
+
+TEST(Strands, ShortSegmentsDoNotVanishBesideALongOne) {
+  Mesh mesh = strand({{0, 0.3f, 0}, {400, 0.3f, 0}}, 0.01f);
+  mesh.positions.insert(mesh.positions.end(), {{0.2f, 0, 0}, {0.203f, 0, 0}});
+  mesh.radii.insert(mesh.radii.end(), {0.05f, 0.05f});
+  mesh.indices.insert(mesh.indices.end(), {2, 3});
+  mesh.materials.push_back(0);
+  const SceneOnDevice scene(strand_scene(mesh, 0.5f));
+  const auto found = scene.trace({make_ray({0.2f, 0.02f, 1}, {0, 0, -1})}, Estimator::exact);
+  EXPECT_NEAR(found[0].transmittance, 0.5, 1e-5);
+}
+
 // All are in one block, whose codes of radii and opacities are those of the greatest.
 TEST(Strands, ThinAndFaintOnesDoNotVanishBesideThickAndOpaqueOnes) {
   constexpr float kThin = 3e-4f, kFaint = 0.01f;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <fstream>
 
 #include "support/programs/bake_command.hpp"
 
@@ -56,6 +57,31 @@ TEST_F(BakeCommand, NormalsOfSheetsThatAreBrighterFromBehindStayInFront) {
     const std::vector<float> bent = file.floats(accessors_of_two(file.doc, channel)[0]);
     EXPECT_EQ(bent[2] > 0, channel == std::string("NORMAL")) << bent[2];
   }
+}
+
+// As files have them whose positions were deduplicated.
+TEST_F(BakeCommand, MeshesOfOnePositionAccessorWithOwnColorsHaveValuesOfTheirOwn) {
+  GltfBuilder builder = rich_triangle();
+  builder.doc["meshes"].push_back(builder.doc["meshes"][0]);
+  for (std::size_t mesh = 0; mesh < 2; ++mesh)
+    builder.doc["meshes"][mesh]["primitives"][0]["attributes"]["COLOR_0"] =
+        builder.add_accessor(std::vector<float>(9, 1.0f), test::kFloat, "VEC3");
+  builder.doc["nodes"].push_back(
+      {{"mesh", 1}, {"scale", {9, 9, 9}}, {"translation", {-2, -2, 0.1}}});
+  builder.doc.erase("scenes");
+  builder.add("scenes", {{"nodes", {0, 1}}});
+  write("in.glb", builder.glb());
+  std::ofstream(path("sun.json")) << R"({"lights": [{"type": "sun", "name": "sun",
+      "direction": [0, 0, -1], "irradiance": 1}]})";
+  const Outcome run = dapple(
+      "bake in.glb -o out.glb --passes ao,bent,light --lights sun.json --sides front --rays 1024");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const test::GltfData file(path("out.glb"));
+  const auto [below, above] = accessors_of_two(file.doc, "_LIGHT_sun");
+  for (const float light : file.floats(below)) EXPECT_LT(light, 0.1f);
+  for (const float light : file.floats(above)) EXPECT_GT(light, 0.9f);
+  EXPECT_NE(accessors_of_two(file.doc, "_BENT_NORMAL")[0],
+            accessors_of_two(file.doc, "_BENT_NORMAL")[1]);
 }
 
 TEST_F(BakeCommand, MeshesThatUseOtherVerticesOfOneBufferShareTheirValues) {

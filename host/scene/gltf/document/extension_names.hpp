@@ -5,6 +5,7 @@ namespace dapple::gltf::extension {
 
 inline constexpr const char* kDraco = "KHR_draco_mesh_compression";
 inline constexpr const char* kEmissiveStrength = "KHR_materials_emissive_strength";
+inline constexpr const char* kInstanceFeatures = "EXT_instance_features";
 inline constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
 inline constexpr const char* kLights = "KHR_lights_punctual";
 inline constexpr const char* kQuantization = "KHR_mesh_quantization";

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <tuple>
+#include <utility>
 
 #include "scene/gltf/document/extension_names.hpp"
 #include "scene/gltf/edit/extension_use.hpp"
@@ -71,13 +71,11 @@ bool keep_other_extras(Json& node) {
 
 }  // namespace
 
-void add_attributes(Editor& editor, const SourceFile& source,
-                    const std::vector<NewAttribute>& attributes) {
+void add_attributes(Editor& editor, const std::vector<NewAttribute>& attributes) {
   bool removed = false;
-  std::map<std::tuple<VertexKey, std::uint32_t, std::string>, std::size_t> stored;
+  std::map<std::pair<std::size_t, std::string>, std::size_t> stored;
   for (const NewAttribute& attribute : attributes) {
-    const VertexKey key = source.vertex_key(attribute.mesh, attribute.primitive, attribute.name);
-    const auto [at, is_new] = stored.try_emplace({key, attribute.set, attribute.name}, 0);
+    const auto [at, is_new] = stored.try_emplace({attribute.shared, attribute.name}, 0);
     if (is_new) at->second = add_accessor(editor, attribute, true);
     Json& primitive = editor.json()["meshes"][attribute.mesh]["primitives"][attribute.primitive];
     primitive["attributes"][attribute.name] = at->second;

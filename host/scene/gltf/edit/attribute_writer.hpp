@@ -19,8 +19,9 @@ enum class Storage : std::uint8_t {
 /// Values of all vertices of a primitive, `components` numbers each.
 struct NewAttribute {
   std::uint32_t mesh = 0, primitive = 0;  ///< indices in the file
-  /// Meshes that share vertices have several sets of values, if they use the same ones.
-  std::uint32_t set = 0;
+  /// Primitives that share values have the same number here; attributes of one name and number are
+  /// stored once.
+  std::size_t shared = 0;
   std::string name;              ///< such as "COLOR_0"; replaced if there is one
   std::uint32_t components = 1;  ///< 1 to 4
   Storage storage = Storage::float32;
@@ -36,9 +37,7 @@ struct NodeValues {
   std::vector<float> values;
 };
 
-/// Adds the attributes. Those with the same vertex_key() and set are stored once.
-void add_attributes(Editor& editor, const SourceFile& source,
-                    const std::vector<NewAttribute>& attributes);
+void add_attributes(Editor& editor, const std::vector<NewAttribute>& attributes);
 
 /// Returns a note if extras of nodes were not objects, else nothing.
 std::string add_node_values(Editor& editor, const std::vector<NodeValues>& nodes);

@@ -21,7 +21,7 @@ bool uses_set(const Json& texture_info, std::uint32_t set) {
 
 std::string texture_with_uvs(const Json& material, std::uint32_t set) {
   for (const auto& [key, value] : material.items()) {
-    if (!value.is_object() || key == "extras") continue;
+    if (!value.is_structured() || key == "extras") continue;
     if (value.contains("index")) {
       if (uses_set(value, set)) return key;
     } else if (std::string inside = texture_with_uvs(value, set); !inside.empty()) {

@@ -48,6 +48,26 @@ bool has_finite_place(const Json& node) {
   return true;
 }
 
+/// Channels that animate the weights of a node animate those of `nodes` instead; -1: none.
+void animate_instead(Json& json, std::uint32_t node, const std::vector<int>& nodes) {
+  if (!json.contains("animations")) return;
+  for (Json& animation : json["animations"]) {
+    Json channels = Json::array();
+    for (const Json& channel : animation["channels"]) {
+      const Json target = channel.value("target", Json::object());
+      const bool moves = target.value("path", "") == "weights" && target.contains("node") &&
+                         target["node"] == node;
+      if (!moves) channels.push_back(channel);
+      for (const int instead : nodes) {
+        if (!moves || instead < 0) continue;
+        channels.push_back(channel);
+        channels.back()["target"]["node"] = instead;
+      }
+    }
+    animation["channels"] = std::move(channels);
+  }
+}
+
 }  // namespace
 
 SourceFile::SourceFile(const std::string& path, bool allow_outside)
@@ -83,8 +103,16 @@ std::uint32_t SourceFile::copy_mesh(std::uint32_t node, std::uint32_t mesh) {
   return static_cast<std::uint32_t>(meshes.size() - 1);
 }
 
+bool SourceFile::has_skin(std::uint32_t node) const {
+  return content->json["nodes"][node].contains("skin");
+}
+
 bool SourceFile::has_gpu_instances(std::uint32_t node) const {
   return has_extension(content->json["nodes"][node], extension::kInstancing);
+}
+
+bool SourceFile::has_instance_features(std::uint32_t node) const {
+  return has_extension(content->json["nodes"][node], extension::kInstanceFeatures);
 }
 
 std::vector<int> SourceFile::split_gpu_instances(std::uint32_t node) {
@@ -110,8 +138,11 @@ std::vector<int> SourceFile::split_gpu_instances(std::uint32_t node) {
     nodes.push_back(std::move(child));
   }
   for (const char* key : {"mesh", "skin", "weights"}) nodes[node].erase(key);
-  remove_extension(nodes[node], extension::kInstancing);
-  unlist_unused_extension(content->json, extension::kInstancing);
+  for (const char* name : {extension::kInstancing, extension::kInstanceFeatures}) {
+    remove_extension(nodes[node], name);
+    unlist_unused_extension(content->json, name);
+  }
+  animate_instead(content->json, node, made);
   return made;
 }
 
@@ -149,6 +180,9 @@ std::string SourceFile::texture_with_uvs(std::uint32_t mesh, std::uint32_t primi
   for_each_variant(user, content->document.model.materials.size(), [&](const Json& mapping) {
     materials.push_back(mapping["material"].get<std::size_t>());
   });
+  if (user.contains("extensions"))  // such as EXT_mesh_features
+    if (std::string own = gltf::texture_with_uvs(user["extensions"], set); !own.empty())
+      return own + " of its own extensions";
   for (const std::size_t i : materials) {
     const Json& material = json["materials"][i];
     const std::string texture = gltf::texture_with_uvs(material, set);

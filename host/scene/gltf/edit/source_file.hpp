@@ -51,8 +51,11 @@ struct SourceFile {
   /// Gives a node a copy of its mesh, which shares all accessors. Returns the index of the copy.
   std::uint32_t copy_mesh(std::uint32_t node, std::uint32_t mesh);
   /// Whether a node has many instances, by EXT_mesh_gpu_instancing.
+  [[nodiscard]] bool has_skin(std::uint32_t node) const;
   [[nodiscard]] bool has_gpu_instances(std::uint32_t node) const;
-  /// Replaces them by child nodes with the same mesh. Returns the index of each one's node, in
+  [[nodiscard]] bool has_instance_features(std::uint32_t node) const;
+  /// Replaces them by child nodes with the same mesh, which the animations of its weights move; the
+  /// extension that numbers instances by their features goes. Returns the index of each one's node, in
   /// order; -1 for an instance whose place is not finite, which gets none.
   std::vector<int> split_gpu_instances(std::uint32_t node);
 
