@@ -32,7 +32,9 @@ using Imath::V2i;
 constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;
 constexpr std::size_t kMaxParts = 65536;  // one a layer: a scene may have thousands of lights
 constexpr std::size_t kMaxName = 255;     ///< of an attribute or its type
-constexpr std::uint32_t kStripRows = 64;  // a multiple of ZIP's blocks of 16 rows
+constexpr std::uint32_t kStripRows = 64;  // at most; a multiple of ZIP's blocks of 16 rows
+constexpr std::uint64_t kStripBytes = 1u << 28;
+constexpr std::uint64_t kMostTimes = 1100;  // that ZIP makes bytes of an image fewer
 
 std::int64_t area(const Box2i& window) {
   const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
@@ -208,10 +210,20 @@ std::uint64_t fewest_chunks(const Imf::Header& header) {
   return ceiling(width, std::max(1u, tile.xSize)) * ceiling(height, std::max(1u, tile.ySize));
 }
 
+/// Of all channels of a row, as floats.
+std::uint64_t row_bytes(const Imf::Header& header) {
+  const Box2i& window = header.dataWindow();
+  const auto width = static_cast<std::uint64_t>(std::int64_t{window.max.x} - window.min.x + 1);
+  std::uint64_t channels = 0;
+  for (auto it = header.channels().begin(); it != header.channels().end(); ++it) ++channels;
+  return width * sizeof(float) * channels;
+}
+
 void check_headers(const std::vector<Imf::Header>& headers, std::uint64_t file_bytes) {
   for (const Imf::Header& header : headers) {
     check_size(header);
-    if (fewest_chunks(header) > file_bytes / sizeof(std::uint64_t))
+    if (fewest_chunks(header) > file_bytes / sizeof(std::uint64_t) ||
+        row_bytes(header) / kMostTimes > file_bytes)
       throw std::runtime_error("damaged: its image is larger than the file");
     if (header.hasType() && Imf::isDeepData(header.type())) {
       throw std::runtime_error("it has deep data, which is not read");
@@ -320,9 +332,12 @@ ExrImage ExrFile::image() {
       // large picture fails before it uses much.
       planes.back()->reserve(std::size_t{width_} * height_);
     }
+    const std::uint64_t of_row = sizeof(float) * width_ * channels_.size();
+    const auto strip =
+        static_cast<std::uint32_t>(std::clamp<std::uint64_t>(kStripBytes / of_row, 1, kStripRows));
     std::vector<std::vector<float>> rows;  // reused, not allocated anew: experiment 803
-    for (std::uint32_t y = 0; y < height_; y += kStripRows) {
-      read(y, std::min(kStripRows, height_ - y), channels_, rows);
+    for (std::uint32_t y = 0; y < height_; y += strip) {
+      read(y, std::min(strip, height_ - y), channels_, rows);
       for (std::size_t i = 0; i < rows.size(); ++i)
         planes[i]->insert(planes[i]->end(), rows[i].begin(), rows[i].end());
     }

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,17 +15,16 @@
 
 namespace dapple {
 
-/// Of a material that is given twice, the last value counts.
+/// A material that is given twice has two settings of one name.
 inline std::vector<std::pair<std::string, std::string>> opacity_settings(
     const std::vector<std::pair<std::string, float>>& opacities) {
   std::vector<std::pair<std::string, std::string>> settings;
-  FreeNames names;
-  for (auto one = opacities.begin(); one != opacities.end(); ++one) {
-    const bool is_replaced = std::any_of(
-        one + 1, opacities.end(), [&](const auto& later) { return later.first == one->first; });
-    if (!is_replaced)
-      settings.emplace_back(names.take("opacity_" + layer_name(one->first)),
-                            fmt::format("{}", one->second));
+  std::map<std::string, std::string> names;  // by material
+  FreeNames free;
+  for (const auto& [material, value] : opacities) {
+    const auto [name, is_new] = names.try_emplace(material);
+    if (is_new) name->second = free.take("opacity_" + layer_name(material));
+    settings.emplace_back(name->second, fmt::format("{}", value));
   }
   return settings;
 }

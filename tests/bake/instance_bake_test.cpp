@@ -203,5 +203,25 @@ TEST(InstanceBake, StrandsOfADoubleSidedMaterialAreLeftOut) {
   }
 }
 
+// A shelf under a board, and a panel beside it that a node makes ten times as high.
+TEST(InstanceBake, MeansAreOverTheSurfaceAsAnUnevenScalePlacesIt) {
+  const V3f size(1, 10, 1);
+  Scene scene;
+  scene.materials.emplace_back();
+  Mesh shelf;
+  append_grid(shelf, {0, 0, 0}, {1, 0, 0}, {0, 0, 1}, 4, 0);
+  append_grid(shelf, {3, 0, 0}, {0, 1, 0}, {0, 0, 1}, 4, 0);
+  Mesh high = shelf, boards;
+  for (V3f& position : high.positions) position *= size;
+  for (const float x : {0.0f, 50.0f})
+    for (const float y : {-0.01f, 0.01f})
+      append_grid(boards, {x - 1, y, -1}, {3, 0, 0}, {0, 0, 3}, 4, 0);
+  scene.meshes = {shelf, high, boards};
+  scene.instances = {{0, M44f().setScale(size)}, {1, M44f().setTranslation(V3f(50, 0, 0))}, {2, M44f()}};
+  const BakeResult baked = bake(scene, of_instances(0.003f));
+  EXPECT_GT(baked.instance_ao[1], 0.8f);
+  EXPECT_NEAR(baked.instance_ao[0], baked.instance_ao[1], 0.01);
+}
+
 }  // namespace
 }  // namespace dapple

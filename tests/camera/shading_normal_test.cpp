@@ -171,6 +171,23 @@ TEST(ShadingNormal, NoNormalThatIsSeenFacesAway) {
   }
 }
 
+// As exporters write them at folds: the sum of a triangle's normals is on its side, one is not.
+TEST(ShadingNormal, ThoseBehindTheirTriangleAreMirroredToItsFront) {
+  Mesh mesh = square({0, 0, 1});
+  mesh.normals[1] = V3f(0.8f, 0, -0.6f);
+  const Scene scene = scene_of(mesh);
+  RenderOptions options = options_of(Normals::shading);
+  options.look = LookAt{V3f(0, 0, 300), V3f(0, 0, 0), V3f(0, 1, 0)};
+  options.fov_degrees = 0.2f;
+  const Film film = render(scene, options).film;
+  const auto &x = film.find("N.X")->pixels, &z = film.find("N.Z")->pixels;
+  for (std::size_t p = 0; p < x.size(); ++p) {
+    EXPECT_GE(x[p], -0.01f) << "all lean to +X";
+    EXPECT_GE(z[p], -0.01f);
+    EXPECT_NEAR(std::hypot(x[p], z[p]), 1, 0.05);
+  }
+}
+
 /// Layers that both films have, at pixels where `counts` is true, are the same bits.
 template <class Counts>
 void expect_same_bits(const Film& a, const Film& b, const Counts& counts) {
@@ -265,6 +282,21 @@ TEST(ShadingNormal, InstancesHaveTheNormalsOfTheSameMeshInWorldSpace) {
   EXPECT_LE(worst_normal(a, b), 0.02);
   EXPECT_NEAR(mean_of(a, "ao.R"), mean_of(b, "ao.R"), 5e-4);
   EXPECT_NEAR(mean_of(a, "light.sun.R"), mean_of(b, "light.sun.R"), 5e-4);
+}
+
+// In nanometres, as some programs of plant models count.
+TEST(ShadingNormal, InstancesOfTinyScalesKeepTheirNormals) {
+  Mesh grid = test::smooth_sphere();
+  for (V3f& position : grid.positions) position *= 1e9f;
+  Scene scene = scene_of(grid);
+  scene.instances = {{0, M44f().setScale(1e-9f)},
+                     {0, M44f().setScale(1e-9f) * M44f().setTranslation(V3f(3, 0, 0))}};
+  Scene in_metres = scene_of(test::smooth_sphere());
+  in_metres.instances = {{0, M44f()}, {0, M44f().setTranslation(V3f(3, 0, 0))}};
+  const RenderOptions options = options_of(Normals::shading);
+  const Film a = render(scene, options).film, b = render(in_metres, options).film;
+  EXPECT_LE(worst_normal(a, b), 0.02);
+  EXPECT_NEAR(mean_of(a, "ao.R"), mean_of(b, "ao.R"), 5e-4);
 }
 
 // Camera rays do not depend on the normals, so that both pictures sum the same normals.

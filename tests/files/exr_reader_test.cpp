@@ -149,6 +149,12 @@ TEST_F(ExrReader, RefusesHugeWindowsBeforeItAllocatesThem) {
   expect_refused(path("c.exr"), "");
 }
 
+TEST_F(ExrReader, RefusesRowsThatTheFileHasNoRoomFor) {
+  write_exr(ramp_film(2, 2), path("a.exr"));
+  write_bytes(path("b.exr"), with_data_window(bytes_of(path("a.exr")), {{0, 0}, {4'000'000, 60}}));
+  expect_refused(path("b.exr"), "damaged: its image is larger than the file");
+}
+
 TEST_F(ExrReader, RefusesMoreTilesThanTheFileHasRoomFor) {
   Imf::Header header(1, 1);
   header.channels().insert("Y", Imf::Channel(Imf::FLOAT));

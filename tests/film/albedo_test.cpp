@@ -184,6 +184,21 @@ TEST(Albedo, UnseenTexelsOfACutOutDoNotColourMeans) {
   EXPECT_NEAR(color_mip_levels(texture)[0].color[0].x, 0.25, 1e-6);
 }
 
+TEST(Albedo, AllTexelsOfAnOddSizeCountTheSame) {
+  for (const std::uint32_t side : {3u, 5u, 9u, 100u, 101u}) {
+    ColorTexture texture;
+    texture.width = side;
+    texture.height = 2;
+    for (std::uint32_t i = 0; i < 2 * side; ++i)
+      texture.rgb.insert(texture.rgb.end(), 3, i % side == side - 1 ? 255 : 0);
+    for (const ColorLevel& level : color_mip_levels(texture)) {
+      double sum = 0;
+      for (const V3f& color : level.color) sum += double{color.x};
+      EXPECT_NEAR(sum / static_cast<double>(level.color.size()), 1.0 / side, 1e-5) << side;
+    }
+  }
+}
+
 TEST(Albedo, ColoursOfCornersAreInterpolated) {
   Scene scene = square();
   scene.meshes[0].colors = {{0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};

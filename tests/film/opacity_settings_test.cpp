@@ -12,9 +12,9 @@ TEST(OpacitySettings, MaterialsWhoseLayerNamesAreEqualHaveSettingsOfTheirOwn) {
             (Settings{{"opacity_a_b", "0.5"}, {"opacity_a_b_2", "0.25"}}));
 }
 
-TEST(OpacitySettings, TheLastValueOfAMaterialCounts) {
+TEST(OpacitySettings, ValuesOfOneMaterialHaveOneName) {
   EXPECT_EQ(opacity_settings({{"leaf", 0.5f}, {"wood", 1}, {"leaf", 0.25f}}),
-            (Settings{{"opacity_wood", "1"}, {"opacity_leaf", "0.25"}}));
+            (Settings{{"opacity_leaf", "0.5"}, {"opacity_wood", "1"}, {"opacity_leaf", "0.25"}}));
 }
 
 }  // namespace

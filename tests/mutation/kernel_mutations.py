@@ -178,7 +178,7 @@ MUTATIONS = [
         r"^(ShadingNormal|SmoothBake|PointAo)\."),
     Mutation(
         "shading-normal-as-a-direction", "kernels/shading/smooth_point.clh",
-        "normal = transform_normal(at->to_object, normal);",
+        "normal = placed_normal(at->to_object, normal);",
         "normal = transform_vector(at->to_world, normal);",
         r"^(ShadingNormal|GltfNormals)\."),
     Mutation(
@@ -223,6 +223,21 @@ MUTATIONS = [
         "const int16 capped = of_caps & ~hits.hit;",
         "const int16 capped = of_caps & of_cone & ~hits.hit;",
         r"^Strands\."),
+    Mutation(
+        "strands-without-thin-ends", "kernels/intersect/segments.clh",
+        "((square > 0.0f) | (widening > 0.0f))",
+        "(square > 0.0f)",
+        r"^Strands\."),
+    Mutation(
+        "normals-behind-their-face", "kernels/shading/smooth_point.clh",
+        "normal -= 2.0f * fmin(dot(normal, geometric), 0.0f) * geometric;",
+        "normal -= 0.0f * geometric;",
+        r"^(ShadingNormal|SmoothNormals|ShadingPass)"),
+    Mutation(
+        "emitters-without-the-probability-of-right-parts", "kernels/lights/mesh_sample.clh",
+        "probability *= to_left ? of_left : 1.0f - of_left;",
+        "probability *= of_left;",
+        r"^(LightSampling|EmissiveMesh)\."),
     Mutation(
         "wrong-caps-of-strands", "kernels/intersect/segments.clh",
         "segments.end_cap = lanes_of_bits(block->end_caps);",

@@ -218,6 +218,16 @@ MUTATIONS = [
         "rows.push_back(row);",
         r"^(Dome|DomeRange)\."),
     Mutation(
+        "joined-panels-are-refitted", "host/bvh/refit/vertex_places.hpp",
+        "kOtherPlaces = 0.02;",
+        "kOtherPlaces = 2;",
+        r"^Refit"),
+    Mutation(
+        "instance-means-over-object-space", "host/bake/instance_bake.cpp",
+        "double{slice.weight[sample]}, value",
+        "1.0, value",
+        r"^InstanceBake\."),
+    Mutation(
         "mirrored-emitters-face-inwards", "host/device/upload/light_upload.cpp",
         "const bool mirrored = Imath::M44d(instance.to_world).determinant() < 0;",
         "const bool mirrored = false;",

@@ -206,7 +206,8 @@ class Prefilter {
     }
   }
 
-  /// Moving triangles remain connected, so a node that is refitted stays a wall or not.
+  /// Moving triangles remain connected, or are built again (refit/vertex_places.hpp), so a node
+  /// that is refitted stays a wall or not.
   void set_opacity(std::uint32_t own, unsigned slot, NodeOpacity& opacity, const Box3f& box,
                    const SurfaceAreas& areas, const WallAreas& walls) const {
     opacity.wall = task_.node_of.empty() ? is_wall(walls, opacity.normals, box)

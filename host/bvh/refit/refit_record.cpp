@@ -35,7 +35,8 @@ void KeptOpacity::keep(unsigned slot, const V3f& axes, const SurfaceAreas& areas
   for (int axis = 0; axis < 3; ++axis) {
     const float sum = areas.front[axis] + areas.back[axis] + areas.other[axis];
     const float share = sum > 0.0f ? axes[axis] * face_area(box, axis) / sum : 1.0f;
-    share_[axis][slot] = byte_of(share * kShareOne);
+    share_[axis][slot] =
+        static_cast<std::uint16_t>(std::lround(std::clamp(share * kShareOne, 0.0f, 65535.0f)));
   }
   factor_[slot] = byte_of((factor - 0.6f) * 255.0f);
 }

@@ -1,5 +1,5 @@
 // The data that refitting an object needs in addition to its arrays: the triangle of each lane of
-// its blocks, and opacities that motion hardly changes. Made while the object is built; about 16
+// its blocks, and opacities that motion hardly changes. Made while the object is built; about 20
 // bytes a triangle.
 #pragma once
 
@@ -33,9 +33,9 @@ class KeptOpacity {
   }
 
  private:
-  /// The code of share 1: no surfaces overlap.
-  static constexpr float kShareOne = 170.0f;
-  std::array<std::array<std::uint8_t, DAPPLE_BVH_WIDTH>, 3> share_{};
+  /// The code of share 1: no surfaces overlap. Of n layers of opaque ones the share is 1/n.
+  static constexpr float kShareOne = 43690.0f;
+  std::array<std::array<std::uint16_t, DAPPLE_BVH_WIDTH>, 3> share_{};
   std::array<std::uint8_t, DAPPLE_BVH_WIDTH> factor_{};
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <mutex>
 
 #include "bvh/build/joined_objects.hpp"
@@ -13,6 +14,7 @@
 #include "bvh/refit/refit_object.hpp"
 #include "bvh/refit/texel_sizes.hpp"
 #include "bvh/refit/traversal_cost.hpp"
+#include "bvh/refit/vertex_places.hpp"
 #include "bvh/storage/object_key.hpp"
 #include "dapple/bvh.hpp"
 #include "scene/check/scene_check.hpp"
@@ -56,6 +58,7 @@ struct UpdatableBvh::State {
   std::vector<ObjectOffsets> offsets;
   std::vector<RefitRecord> records;  ///< one for each mesh; without nodes: there is no record
   std::vector<double> built_costs;   ///< of each object with a record, at its last build
+  std::vector<double> built_places;  ///< the same: share_of_places()
   std::vector<MeshKey> keys;
   std::vector<Instance> instances;
 
@@ -83,6 +86,7 @@ void UpdatableBvh::State::build(const Scene& scene, Motion motion,
   offsets.assign(meshes + 1, {});
   records.assign(meshes, {});
   built_costs.assign(meshes, 0);
+  built_places.assign(meshes, 1);
   if (motion == Motion::expected) return rebuild(scene, std::vector<bool>(meshes, false));
   BuiltScene built = build_scene(scene, cache_folder);
   bvh = std::move(built.bvh);
@@ -96,8 +100,9 @@ void UpdatableBvh::State::rebuild(const Scene& scene, const std::vector<bool>& i
       build_refittable(scene, separated(is_kept), is_kept, records, bvh.statistics);
   put_together(scene, std::move(finished));
   tbb::parallel_for(std::size_t{0}, is_kept.size(), [&](std::size_t m) {
-    if (!is_kept[m] && can_refit(scene, m))
-      built_costs[m] = traversal_cost(arrays_of(m).nodes, scene.meshes[m]);
+    if (is_kept[m] || !can_refit(scene, m)) return;
+    built_costs[m] = traversal_cost(arrays_of(m).nodes, scene.meshes[m]);
+    built_places[m] = share_of_places(scene.meshes[m].positions);
   });
 }
 
@@ -154,7 +159,9 @@ std::vector<std::size_t> UpdatableBvh::State::sort_objects(const Scene& scene,
     const bool has_its_form = now[m].form == keys[m].form;
     if (has_its_form && (now[m].positions == keys[m].positions || objects[m].box.isEmpty()))
       continue;
-    is_kept[m] = has_its_form && can_refit(scene, m);
+    is_kept[m] =
+        has_its_form && can_refit(scene, m) &&
+        std::fabs(share_of_places(scene.meshes[m].positions) - built_places[m]) < kOtherPlaces;
     if (is_kept[m]) moved.push_back(m);
   }
   return moved;

@@ -290,9 +290,8 @@ std::vector<NewAttribute> baked_attributes(const SourceFile& file, const Scene& 
   const std::vector<bool> mirrored = mirrored_skins(file, scene);
   std::vector<BakedMesh> turned;
   for (std::size_t m = 0; m < result.meshes.size(); ++m) {
-    turned.push_back(to_normal
-                         ? as_normals(scene.meshes[m], result.meshes[m], metric_of(scene, m))
-                         : result.meshes[m]);
+    turned.push_back(to_normal ? as_normals(scene.meshes[m], result.meshes[m], metric_of(scene, m))
+                               : result.meshes[m]);
     for (V3f& bent : turned.back().bent) bent.x = mirrored[m] ? -bent.x : bent.x;
   }
   const FileSums sums(file, scene, turned, channel.attribute);

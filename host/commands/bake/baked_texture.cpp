@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
+#include <optional>
 #include <set>
 
 #include "bake/texture/texture_layout.hpp"
@@ -71,21 +73,26 @@ std::string fault_of(const std::string& name, const Scene& scene,
   return {};
 }
 
-/// TEXCOORD_`set` for each mesh and vertex; empty if a primitive has none. `missing`: that
-/// primitive, if others have one.
+using UvSet = std::optional<std::uint32_t>;
+
+/// TEXCOORD_n for each mesh and vertex, n = `set`, or that of the occlusion texture; empty if a
+/// primitive has none. `missing`: that primitive, if others have one.
 std::vector<std::vector<V2f>> uvs_of_set(const gltf::SourceFile& file, const Scene& scene,
-                                         std::uint32_t set, std::string& missing) {
+                                         UvSet set, std::string& missing) {
   std::vector<std::vector<V2f>> uvs(scene.meshes.size());
   bool some = false;
   for (std::size_t m = 0; m < uvs.size(); ++m) {
     if (scene.meshes[m].has_strands()) continue;
     for (const VertexSource& source : scene.meshes[m].sources) {
-      const std::vector<V2f> all = file.uvs(source.mesh, source.primitive, set);
+      const UvSet of_it = set ? set : file.occlusion_set(source.mesh, source.primitive);
+      std::vector<V2f> all;
+      if (of_it) all = file.uvs(source.mesh, source.primitive, *of_it);
       some = some || !all.empty();
       if (all.empty()) {
-        if (missing.empty())
+        if (missing.empty() && set)
           missing = fmt::format("primitive {} of mesh {} has no TEXCOORD_{}", source.primitive,
-                                source.mesh, set);
+                                source.mesh, *set);
+        if (!set) return {};
         continue;
       }
       for (std::uint32_t i = 0; i < source.count; ++i)
@@ -96,17 +103,27 @@ std::vector<std::vector<V2f>> uvs_of_set(const gltf::SourceFile& file, const Sce
   return some && missing.empty() ? std::move(uvs) : std::vector<std::vector<V2f>>{};
 }
 
-/// The vertices of one primitive by the chart that shows them.
+/// The vertices of one primitive by the chart that shows them. Of primitives that use all vertices
+/// of their accessors these keep their numbers, by which extensions may know them; copies follow.
 class VertexCopies {
  public:
   VertexCopies(const VertexSource& source, gltf::TexturedPrimitive& primitive)
-      : source_(source), primitive_(primitive) {}
+      : source_(source), primitive_(primitive), is_free_(source.used.empty() ? source.count : 0) {
+    is_free_.flip();
+    primitive.source.resize(is_free_.size());
+    std::iota(primitive.source.begin(), primitive.source.end(), 0u);
+    primitive.uvs.resize(is_free_.size(), V2f(0, 0));
+  }
 
   void add_corner(std::uint32_t vertex, std::uint32_t chart, const V2f& uv) {
-    const auto [at, is_new] = copies_.try_emplace(
-        std::uint64_t{vertex} << 32 | chart, static_cast<std::uint32_t>(primitive_.source.size()));
-    if (is_new) {
-      const std::uint32_t i = vertex - source_.first;
+    const std::uint32_t i = vertex - source_.first;
+    const bool keeps_its_number = i < is_free_.size() && is_free_[i];
+    const auto number = keeps_its_number ? i : static_cast<std::uint32_t>(primitive_.source.size());
+    const auto [at, is_new] = copies_.try_emplace(std::uint64_t{vertex} << 32 | chart, number);
+    if (is_new && keeps_its_number) {
+      is_free_[i] = false;
+      primitive_.uvs[i] = uv;
+    } else if (is_new) {
       primitive_.source.push_back(source_.used.empty() ? i : source_.used[i]);
       primitive_.uvs.push_back(uv);
     }
@@ -116,6 +133,7 @@ class VertexCopies {
  private:
   const VertexSource& source_;
   gltf::TexturedPrimitive& primitive_;
+  std::vector<bool> is_free_;  ///< vertices that no chart has shown yet
   std::map<std::uint64_t, std::uint32_t> copies_;
 };
 
@@ -158,14 +176,14 @@ std::uint32_t free_uv_set(const gltf::SourceFile& file, const VertexSource& sour
 
 FileUvs choose_uvs(const gltf::SourceFile& file, const Scene& scene, const BakeOptions& options) {
   FileUvs chosen;
-  for (const std::uint32_t set : {1u, 0u}) {
+  for (const UvSet set : {UvSet(1), UvSet(0), UvSet()}) {
     std::string fault;
     std::vector<std::vector<V2f>> uvs = uvs_of_set(file, scene, set, fault);
     if (!uvs.empty()) {
-      fault = fault_of(fmt::format("TEXCOORD_{}", set), scene, uvs, options);
+      fault = fault_of(set ? fmt::format("TEXCOORD_{}", *set) : "", scene, uvs, options);
       if (fault.empty()) return {std::move(uvs), set, chosen.note};
     }
-    if (fault.empty()) continue;
+    if (fault.empty() || !set) continue;
     if (!chosen.note.empty()) chosen.note += "; ";
     chosen.note += fault;
   }
@@ -174,22 +192,24 @@ FileUvs choose_uvs(const gltf::SourceFile& file, const Scene& scene, const BakeO
 
 std::vector<gltf::TexturedPrimitive> textured_primitives(const gltf::SourceFile& file,
                                                          const Scene& scene,
-                                                         const TextureLayout& layout,
-                                                         std::uint32_t set) {
+                                                         const TextureLayout& layout, UvSet set) {
   std::vector<gltf::TexturedPrimitive> primitives;
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
     if (layout.corners[m].empty()) continue;
     const Mesh& mesh = scene.meshes[m];
     std::size_t corner = 0;
     for (const VertexSource& source : mesh.sources) {
-      gltf::TexturedPrimitive primitive{source.mesh, source.primitive, set, {}, {}, {}};
-      VertexCopies copies(source, primitive);
+      const UvSet of_it = set ? set : file.occlusion_set(source.mesh, source.primitive);
+      gltf::TexturedPrimitive primitive{source.mesh, source.primitive, of_it.value_or(0), {}, {},
+                                        {}};
+      std::optional<VertexCopies> copies_of;
+      if (!layout.chart_of.empty()) copies_of.emplace(source, primitive);
       for (; corner < mesh.indices.size() && mesh.indices[corner] < source.first + source.count;
            ++corner)
-        if (!layout.chart_of.empty())
-          copies.add_corner(mesh.indices[corner], layout.chart_of[m][corner / 3],
-                            layout.corners[m][corner]);
-      if (!layout.chart_of.empty()) primitive.uv_set = free_uv_set(file, source);
+        if (copies_of)
+          copies_of->add_corner(mesh.indices[corner], layout.chart_of[m][corner / 3],
+                                layout.corners[m][corner]);
+      if (copies_of) primitive.uv_set = free_uv_set(file, source);
       primitives.push_back(std::move(primitive));
     }
   }

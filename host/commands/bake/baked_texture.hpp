@@ -2,6 +2,7 @@
 // texture coordinates that the file has, and primitives with the ones that were made.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,19 +15,21 @@ namespace dapple {
 /// Texture coordinates that a file has for all of its triangles.
 struct FileUvs {
   std::vector<std::vector<V2f>> uvs;  ///< as BakeOptions::texture_uvs; empty: none can be used
-  std::uint32_t set = 0;              ///< n of TEXCOORD_n
-  std::string note;                   ///< why others cannot be used; empty: there are none
+  /// n of TEXCOORD_n; none: those that occlusion textures read, which may differ.
+  std::optional<std::uint32_t> set = {};
+  std::string note;  ///< why others cannot be used; empty: there are none
 };
 
-/// TEXCOORD_1, else TEXCOORD_0, if all primitives have it, inside of [0,1], without overlaps, and
-/// with an area for nearly all triangles.
+/// TEXCOORD_1, else TEXCOORD_0, else those that occlusion textures read, as an earlier bake made
+/// them; if all primitives have it, inside of [0,1], without overlaps, and with an area for nearly
+/// all triangles.
 FileUvs choose_uvs(const gltf::SourceFile& file, const Scene& scene, const BakeOptions& options);
 
 /// The primitives that the texture is on. `set`: of FileUvs, for a layout that came from there.
 std::vector<gltf::TexturedPrimitive> textured_primitives(const gltf::SourceFile& file,
                                                          const Scene& scene,
                                                          const TextureLayout& layout,
-                                                         std::uint32_t set);
+                                                         std::optional<std::uint32_t> set);
 
 /// Which texture coordinates show the texture. `fault`: FileUvs::note.
 std::string coordinates_note(const TextureLayout& layout,

@@ -9,6 +9,7 @@
 
 #include "dapple/error.hpp"
 #include "scene/check/scene_check.hpp"
+#include "scene/message.hpp"
 
 namespace dapple {
 namespace {
@@ -32,15 +33,35 @@ void check_point(const Scene& scene, const std::string& what, const V3f& point) 
 
 /// Steps of coordinates that are coarse, as a part of the scene's size: 1 mm of 100 m.
 constexpr double kCoarseStep = 1e-5;
+/// Meshes of at most so many triangles are merged, wherever they are placed (scene/merge.cpp).
+constexpr std::size_t kTinyTriangles = 256;
 
-void warn_of_coarse_steps(const Box3f& bounds, Scene& scene) {
+/// Warns if coordinates within `bounds` have coarse steps.
+void warn_of_coarse_steps(const Box3f& bounds, const std::string& what, const char* origin,
+                          Scene& scene) {
   const double far = std::max(reach(bounds.min), reach(bounds.max));
   const double step = far * std::numeric_limits<float>::epsilon();
   if (!(step > kCoarseStep * (bounds.max - bounds.min).length())) return;
   scene.warnings.push_back(
-      fmt::format("the scene lies {:.3g} m from the origin, where coordinates have steps of {:.2g} "
-                  "m: move it to the origin, or smaller details and distances are lost",
-                  far, step));
+      fmt::format("{} lies {:.3g} m from {}, where coordinates have steps of {:.2g} m: "
+                  "move it to {}, or smaller details and distances are lost",
+                  what, far, origin, step, origin));
+}
+
+/// Rays are carried into the space of meshes that are placed several times; others are brought
+/// into the world.
+void warn_of_far_meshes(Scene& scene) {
+  std::vector<std::uint32_t> placements(scene.meshes.size());
+  for (const Instance& instance : scene.instances) ++placements[instance.mesh];
+  for (std::size_t m = 0; m < placements.size(); ++m) {
+    const Mesh& mesh = scene.meshes[m];
+    if (placements[m] < 2 || mesh.primitive_count() <= kTinyTriangles) continue;
+    Box3f bounds;
+    for (const V3f& position : mesh.positions) bounds.extendBy(position);
+    const std::size_t warnings = scene.warnings.size();
+    warn_of_coarse_steps(bounds, element("mesh", m, mesh.name), "its own origin", scene);
+    if (scene.warnings.size() > warnings) return;  // of one, as all are of one file
+  }
 }
 
 }  // namespace
@@ -50,7 +71,8 @@ void check_numeric_range(Scene& scene) {
   if (!bounds.isEmpty()) {
     check_point(scene, "its geometry", bounds.min);
     check_point(scene, "its geometry", bounds.max);
-    warn_of_coarse_steps(bounds, scene);
+    warn_of_coarse_steps(bounds, "the scene", "the origin", scene);
+    warn_of_far_meshes(scene);
   }
   for (const Light& light : scene.lights) {
     if (light.kind == LightKind::rect || light.kind == LightKind::disk ||

@@ -140,6 +140,13 @@ TEST_F(BakeExtensions, TextureCoordinatesThatATextureUsesAreNotReplaced) {
   }
   EXPECT_TRUE(baked("--channel TEXCOORD_2.x")["meshes"][0]["primitives"][0]["attributes"].contains(
       "TEXCOORD_2"));
+  builder.doc["materials"][1]["extensions"].erase("KHR_materials_sheen");
+  builder.doc["meshes"][0]["primitives"][0]["extensions"]["EXT_mesh_features"]["featureIds"] = {
+      {{"featureCount", 2}, {"texture", {{"index", 0}, {"texCoord", 1}}}}};
+  write("in.glb", builder.glb());
+  std::filesystem::remove(path("out.glb"));
+  expect_failure(dapple("bake in.glb -o out.glb --channel TEXCOORD_1.x"), 2,
+                 "texture of its own extensions");
 }
 
 }  // namespace

@@ -106,6 +106,45 @@ GltfBuilder three_instances(const std::function<json(GltfBuilder&)>& more) {
   return builder;
 }
 
+TEST_F(BakeCommand, AnimationsOfWeightsMoveTheNodesThatInstancesBecame) {
+  GltfBuilder builder;
+  builder.add_triangle();
+  const int shift = builder.add_accessor(std::vector<float>(9, 0.1f), test::kFloat, "VEC3");
+  builder.doc["accessors"].back()["min"] =
+      builder.doc["accessors"].back()["max"] = {0.1f, 0.1f, 0.1f};
+  builder.doc["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", shift}}};
+  json& node = builder.doc["nodes"][0];
+  node["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] =
+      builder.add_accessor(std::vector<float>{0, 0, 0, 9, 0, 0}, test::kFloat, "VEC3");
+  node["extensions"]["EXT_instance_features"]["featureIds"] = {{{"featureCount", 2}}};
+  builder.doc["extensionsUsed"] = {"EXT_mesh_gpu_instancing", "EXT_instance_features"};
+  const int times = builder.add_accessor(std::vector<float>{0, 1}, test::kFloat, "SCALAR");
+  builder.doc["accessors"].back()["min"] = {0};
+  builder.doc["accessors"].back()["max"] = {1};
+  const int weights = builder.add_accessor(std::vector<float>{0, 1}, test::kFloat, "SCALAR");
+  builder.add("animations",
+              {{"samplers", {{{"input", times}, {"output", weights}}}},
+               {"channels",
+                {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}},
+                 {{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}}});
+  builder.doc["animations"][0]["channels"].erase(1);
+  write("in.glb", builder.glb());
+  const Outcome run = dapple("bake in.glb -o out.glb --channel _AO --instances unique");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_NE(run.err.find("EXT_instance_features of instances that became nodes is left out"),
+            std::string::npos)
+      << run.err;
+  const json after = document("out.glb");
+  EXPECT_FALSE(after["nodes"][0].contains("extensions"));
+  EXPECT_FALSE(after.contains("extensionsUsed"));
+  json moved = json::array();
+  for (const json& channel : after["animations"][0]["channels"]) {
+    EXPECT_EQ(channel["target"]["path"], "weights");
+    moved.push_back(channel["target"]["node"]);
+  }
+  EXPECT_EQ(moved, after["nodes"][0]["children"]);
+}
+
 TEST_F(BakeCommand, NodesOfInstancesHaveUnitRotations) {
   const auto rotations = [](GltfBuilder& builder) {
     return json{{"ROTATION", builder.add_accessor(

@@ -189,6 +189,48 @@ TEST_F(BakeUvSets, ASetThatAColourTextureReadsInVainIsNotTaken) {
   EXPECT_NE(file.floats(attributes["TEXCOORD_1"]), std::vector<float>(6));
 }
 
+TEST_F(BakeUvSets, ASecondBakeUsesTheCoordinatesThatTheFirstOneMade) {
+  write_squares({{{kFull, kFull}, {kFull}}});
+  const std::string first = notes_of();
+  EXPECT_TRUE(contains(first, "coordinates of its own, TEXCOORD_1 or TEXCOORD_2")) << first;
+  const json made = document("out.glb");
+  std::filesystem::rename(path("out.glb"), path("in.glb"));
+  const std::string second = notes_of();
+  EXPECT_TRUE(contains(second, "the texture uses TEXCOORD_1 or TEXCOORD_2")) << second;
+  const json again = document("out.glb");
+  for (std::size_t p = 0; p < 2; ++p) {
+    const json &is = again["meshes"][0]["primitives"][p], &was = made["meshes"][0]["primitives"][p];
+    EXPECT_EQ(is["attributes"].size(), was["attributes"].size());
+    const auto set_of = [p](const json& doc) {
+      const std::size_t material = doc["meshes"][0]["primitives"][p]["material"];
+      return doc["materials"][material]["occlusionTexture"].value("texCoord", 0);
+    };
+    EXPECT_EQ(set_of(again), set_of(made));
+  }
+}
+
+// Extensions may know vertices by their numbers.
+TEST_F(BakeUvSets, VerticesKeepTheirNumbersAndCopiesFollow) {
+  GltfBuilder builder;
+  // Two squares of a fold, whose first triangle begins at the last vertex.
+  const std::vector<float> positions{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1};
+  const int indices = builder.add_accessor(
+      std::vector<std::uint16_t>{5, 4, 0, 5, 0, 3, 0, 1, 2, 0, 2, 3}, test::kUint16, "SCALAR");
+  const int mesh =
+      builder.add("meshes", {{"primitives",
+                              {{{"attributes", {{"POSITION", builder.add_positions(positions)}}},
+                                {"indices", indices}}}}});
+  builder.add("nodes", {{"mesh", mesh}});
+  write("in.glb", builder.glb());
+  EXPECT_TRUE(contains(notes_of(), "coordinates of its own"));
+  const test::GltfData file(path("out.glb"));
+  std::vector<float> kept =
+      file.floats(file.doc["meshes"][0]["primitives"][0]["attributes"]["POSITION"]);
+  ASSERT_GT(kept.size(), positions.size()) << "the fold is a seam";
+  kept.resize(positions.size());
+  EXPECT_EQ(kept, positions);
+}
+
 TEST_F(BakeUvSets, AnOverlapThatIsAcceptedIsToldWithItsShare) {
   // A large square without the texels whose centre is on its diagonal, and a small one on two.
   const Rect two_texels = {10 / 64.0f, 20 / 64.0f, 12 / 64.0f, 21 / 64.0f};

@@ -192,6 +192,15 @@ std::string SourceFile::texture_with_uvs(std::uint32_t mesh, std::uint32_t primi
   return {};
 }
 
+std::optional<std::uint32_t> SourceFile::occlusion_set(std::uint32_t mesh,
+                                                       std::uint32_t primitive) const {
+  const int material = material_of(content->json["meshes"][mesh]["primitives"][primitive]);
+  if (material == kNoMaterial) return {};
+  const Json& json = content->json["materials"][static_cast<std::size_t>(material)];
+  if (!json.contains("occlusionTexture")) return {};
+  return json["occlusionTexture"].value("texCoord", 0u);
+}
+
 std::vector<std::string> SourceFile::attributes(std::uint32_t mesh, std::uint32_t primitive) const {
   std::vector<std::string> names;
   for (const auto& [name, accessor] : content->primitive(mesh, primitive).attributes)

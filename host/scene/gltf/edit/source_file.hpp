@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,9 @@ struct SourceFile {
   /// The names of a primitive's attributes, sorted.
   [[nodiscard]] std::vector<std::string> attributes(std::uint32_t mesh,
                                                     std::uint32_t primitive) const;
+  /// n of the TEXCOORD_n that its material's occlusion texture names; none if it has no such.
+  [[nodiscard]] std::optional<std::uint32_t> occlusion_set(std::uint32_t mesh,
+                                                           std::uint32_t primitive) const;
   /// The number of a primitive's TEXCOORD_n attributes.
   [[nodiscard]] std::uint32_t uv_sets(std::uint32_t mesh, std::uint32_t primitive) const;
 
@@ -55,8 +59,8 @@ struct SourceFile {
   [[nodiscard]] bool has_gpu_instances(std::uint32_t node) const;
   [[nodiscard]] bool has_instance_features(std::uint32_t node) const;
   /// Replaces them by child nodes with the same mesh, which the animations of its weights move; the
-  /// extension that numbers instances by their features goes. Returns the index of each one's node, in
-  /// order; -1 for an instance whose place is not finite, which gets none.
+  /// extension that numbers instances by their features goes. Returns the index of each one's node,
+  /// in order; -1 for an instance whose place is not finite, which gets none.
   std::vector<int> split_gpu_instances(std::uint32_t node);
 
   struct Content;
