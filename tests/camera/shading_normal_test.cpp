@@ -178,13 +178,14 @@ TEST(ShadingNormal, ThoseBehindTheirTriangleAreMirroredToItsFront) {
   const Scene scene = scene_of(mesh);
   RenderOptions options = options_of(Normals::shading);
   options.look = LookAt{V3f(0, 0, 300), V3f(0, 0, 0), V3f(0, 1, 0)};
-  options.fov_degrees = 0.2f;
+  options.fov_degrees = 0.36f;
   const Film film = render(scene, options).film;
   const auto &x = film.find("N.X")->pixels, &z = film.find("N.Z")->pixels;
   for (std::size_t p = 0; p < x.size(); ++p) {
+    if (film.find("A")->pixels[p] < 1) continue;
     EXPECT_GE(x[p], -0.01f) << "all lean to +X";
     EXPECT_GE(z[p], -0.01f);
-    EXPECT_NEAR(std::hypot(x[p], z[p]), 1, 0.05);
+    EXPECT_GE(std::hypot(x[p], z[p]), 0.7) << "those at the crease may turn to the viewer";
   }
 }
 
