@@ -10,9 +10,9 @@
 namespace dapple {
 
 /// The number of different places of vertices over that of vertices, on a grid of 2^17 steps over
-/// their bounds; within 0.02 of it for 100 vertices, 0.001 for a million (linear counting: Whang et
-/// al., "A Linear-Time Probabilistic Counting Algorithm for Database Applications", 1990). 1 of no
-/// vertices. Linear in these, about 5 ns each on one core.
+/// their bounds; within 0.02 of it for 100 vertices, 0.005 for a thousand and more (linear
+/// counting: Whang et al., "A Linear-Time Probabilistic Counting Algorithm for Database
+/// Applications", 1990). 1 of no vertices. Linear in these.
 double share_of_places(std::span<const V3f> positions);
 
 /// The least change of share_of_places() after which an object is built again.
