@@ -206,10 +206,7 @@ class Scene:
         self._native.add_sun(towards, strength, degrees, _arguments.text("name", name))
 
     def add_sky(
-        self,
-        kind: str | PathLike[str] = "uniform",
-        irradiance: float = 1.0,
-        rotation: float = 0.0,
+        self, kind: str | PathLike[str] = "uniform", irradiance: float = 1.0, rotation: float = 0.0
     ) -> None:
         """Adds a sky as the light "sky".
 
@@ -224,8 +221,8 @@ class Scene:
         True
         """
         strength = _arguments.non_negative("irradiance", irradiance)
-        degrees = _arguments.finite("rotation", rotation)
-        self._native.add_sky(_arguments.path("kind", kind), strength, degrees)
+        turn = _arguments.finite("rotation", rotation)
+        self._native.add_sky(_arguments.path("kind", kind), strength, turn)
 
     def save(self, path: str | PathLike[str]) -> None:
         """Writes meshes, instances, materials without textures, and cameras as one .glb file.

@@ -60,10 +60,10 @@ def test_skies_turn_as_those_of_the_program(
     arguments = [program, "points", tree._native.source, "--at", points, "-o", out, "-q"]
     subprocess.run([*arguments, "--sky", sky, "--sky-rotation", "90"], check=True)
     table = np.load(out)
-    straight = dapple.load(tree._native.source)
+    straight, turned = (dapple.load(tree._native.source) for _ in range(2))
     straight.add_sky(sky)
-    tree.add_sky(sky, rotation=90)
-    columns = tree.measure(ground)
+    turned.add_sky(sky, rotation=90)
+    columns = turned.measure(ground)
     names = [name for name in columns if name.startswith("sky")]
     assert names
     for name in names:

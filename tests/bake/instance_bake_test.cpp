@@ -217,7 +217,8 @@ TEST(InstanceBake, MeansAreOverTheSurfaceAsAnUnevenScalePlacesIt) {
     for (const float y : {-0.01f, 0.01f})
       append_grid(boards, {x - 1, y, -1}, {3, 0, 0}, {0, 0, 3}, 4, 0);
   scene.meshes = {shelf, high, boards};
-  scene.instances = {{0, M44f().setScale(size)}, {1, M44f().setTranslation(V3f(50, 0, 0))}, {2, M44f()}};
+  scene.instances = {
+      {0, M44f().setScale(size)}, {1, M44f().setTranslation(V3f(50, 0, 0))}, {2, M44f()}};
   const BakeResult baked = bake(scene, of_instances(0.003f));
   EXPECT_GT(baked.instance_ao[1], 0.8f);
   EXPECT_NEAR(baked.instance_ao[0], baked.instance_ao[1], 0.01);

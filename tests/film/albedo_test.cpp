@@ -9,6 +9,7 @@
 #include <random>
 
 #include "dapple/render.hpp"
+#include "device/upload/color_mip_levels.hpp"
 #include "device/upload/color_upload.hpp"
 #include "support/files/hair_builder.hpp"
 #include "support/scenes/smooth_shapes.hpp"
@@ -177,11 +178,33 @@ TEST(Albedo, UnseenTexelsOfACutOutDoNotColourMeans) {
   texture.width = texture.height = 2;
   texture.rgb = {255, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
   texture.alpha = {255, 0, 0, 0};
-  const std::vector<ColorLevel> levels = color_mip_levels(texture);
+  const std::vector<ColorLevel> levels = color_mip_levels(texture, {TexelWeights::kByAlpha});
   ASSERT_EQ(levels.size(), 1u);
   EXPECT_NEAR(levels[0].color[0].x, 1, 1e-3);
   texture.alpha = {};
-  EXPECT_NEAR(color_mip_levels(texture)[0].color[0].x, 0.25, 1e-6);
+  EXPECT_NEAR(color_mip_levels(texture, {TexelWeights::kByAlpha})[0].color[0].x, 0.25, 1e-6);
+}
+
+TEST(Albedo, TexelsCountAsTheMaterialSeesThem) {
+  ColorTexture texture;
+  texture.width = 2;
+  texture.height = 1;
+  texture.rgb = {255, 0, 0, 0, 0, 255};
+  texture.alpha = {120, 255};
+  Material material;
+  material.alpha_texture = 0;
+  const auto red = [&] { return color_mip_levels(texture, texel_weights(material))[0].color[0].x; };
+  EXPECT_NEAR(red(), 0.5, 1e-4) << "opaque";
+  material.alpha_mode = AlphaMode::blend;
+  EXPECT_NEAR(red(), 120.0 / 375, 1e-4);
+  material.alpha_mode = AlphaMode::mask;
+  EXPECT_NEAR(red(), 0, 1e-3);
+  material.alpha_cutoff = 0.25f;
+  EXPECT_NEAR(red(), 0.5, 1e-4);
+  material.alpha = 0.5f;
+  EXPECT_NEAR(red(), 0, 1e-3);
+  material.alpha_texture = -1;
+  EXPECT_NEAR(red(), 0.5, 1e-4) << "as --opacity makes it";
 }
 
 TEST(Albedo, AllTexelsOfAnOddSizeCountTheSame) {
@@ -191,7 +214,7 @@ TEST(Albedo, AllTexelsOfAnOddSizeCountTheSame) {
     texture.height = 2;
     for (std::uint32_t i = 0; i < 2 * side; ++i)
       texture.rgb.insert(texture.rgb.end(), 3, i % side == side - 1 ? 255 : 0);
-    for (const ColorLevel& level : color_mip_levels(texture)) {
+    for (const ColorLevel& level : color_mip_levels(texture, {})) {
       double sum = 0;
       for (const V3f& color : level.color) sum += double{color.x};
       EXPECT_NEAR(sum / static_cast<double>(level.color.size()), 1.0 / side, 1e-5) << side;

@@ -235,8 +235,8 @@ MUTATIONS = [
         r"^(ShadingNormal|SmoothNormals|ShadingPass)"),
     Mutation(
         "emitters-without-the-probability-of-right-parts", "kernels/lights/mesh_sample.clh",
-        "probability *= to_left ? of_left : 1.0f - of_left;",
-        "probability *= of_left;",
+        "const float16 chosen = to_left ? probability : 1.0f - probability;",
+        "const float16 chosen = to_left ? probability : 1.0f;",
         r"^(LightSampling|EmissiveMesh)\."),
     Mutation(
         "wrong-caps-of-strands", "kernels/intersect/segments.clh",

@@ -7,10 +7,13 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
+#include <utility>
 
 #include "bvh/storage/textured_triangle.hpp"
 #include "dapple/error.hpp"
+#include "device/upload/color_mip_levels.hpp"
 #include "device/upload/texture_upload.hpp"
 
 namespace dapple {
@@ -22,23 +25,6 @@ constexpr std::size_t kGrain = 1u << 11;
 /// Words beyond this number cannot be told from those with DAPPLE_COLOR_LANES.
 constexpr std::size_t kMaxWords = DAPPLE_COLOR_LANES;
 
-/// The sRGB transfer function of IEC 61966-2-1.
-float linear_of(std::size_t code) {
-  const double value = static_cast<double>(code) / 255;
-  return static_cast<float>(value <= 0.04045 ? value / 12.92
-                                             : std::pow((value + 0.055) / 1.055, 2.4));
-}
-
-/// What the codes of 8 bits stand for.
-const std::array<float, 256>& table() {
-  static const std::array<float, 256> kTable = [] {
-    std::array<float, 256> values{};
-    for (std::size_t code = 0; code < values.size(); ++code) values[code] = linear_of(code);
-    return values;
-  }();
-  return kTable;
-}
-
 uint code(float value, int largest) {
   const float inside = value > 0 ? std::min(value, 1.0f) : 0.0f;  // 0 for NaN
   return static_cast<uint>(std::sqrt(inside) * static_cast<float>(largest) + 0.5f);
@@ -49,77 +35,6 @@ uint packed(const V3f& linear) {
          code(linear.z, DAPPLE_BLUE_CODES) << 22;
 }
 
-/// A mip level: sums of colours times weights, and sums of weights.
-struct WeightedLevel {
-  std::uint32_t width = 0, height = 0;
-  std::vector<V3f> color;
-  std::vector<float> weight;
-};
-
-/// A colour and its weight.
-struct WeightedTexel {
-  V3f color;
-  float weight;
-};
-
-/// The texel of a texture, weighted by its alpha. A little weight stays where that is 0, for texels
-/// among which there is no other.
-WeightedTexel texel_of(const ColorTexture& texture, std::size_t i) {
-  constexpr float kUnseen = 1e-4f;
-  const std::uint8_t* texel = &texture.rgb[3 * i];
-  const float weight =
-      texture.alpha.empty() ? 1.0f : std::max(kUnseen, static_cast<float>(texture.alpha[i]) / 255);
-  return {V3f(table()[texel[0]], table()[texel[1]], table()[texel[2]]) * weight, weight};
-}
-
-/// Texels of a finer level that a coarse one covers along a side, and how much of them.
-class CoveredTexels {
- public:
-  CoveredTexels(std::uint32_t at, std::uint32_t fine, std::uint32_t coarse)
-      : coarse_(coarse), begin_(std::uint64_t{at} * fine), end_(begin_ + fine) {}
-
-  [[nodiscard]] std::uint32_t first() const { return static_cast<std::uint32_t>(begin_ / coarse_); }
-  [[nodiscard]] std::uint32_t end() const {
-    return static_cast<std::uint32_t>((end_ + coarse_ - 1) / coarse_);
-  }
-  [[nodiscard]] float share(std::uint32_t texel) const {
-    const std::uint64_t from = texel * coarse_;
-    return static_cast<float>(std::min(end_, from + coarse_) - std::max(begin_, from)) /
-           static_cast<float>(coarse_);
-  }
-
- private:
-  std::uint64_t coarse_, begin_, end_;  ///< in parts of a fine texel
-};
-
-/// Sums of the texels of a finer level that each texel covers: two by two, or parts of three where
-/// a size is odd.
-template <class Texel>
-WeightedLevel coarser(std::uint32_t width, std::uint32_t height, const Texel& texel) {
-  WeightedLevel coarse{std::max(1u, width / 2), std::max(1u, height / 2), {}, {}};
-  coarse.color.resize(std::size_t{coarse.width} * coarse.height);
-  coarse.weight.resize(coarse.color.size());
-  tbb::parallel_for(0u, coarse.height, [&](std::uint32_t y) {
-    const CoveredTexels rows(y, height, coarse.height);
-    for (std::uint32_t x = 0; x < coarse.width; ++x) {
-      const CoveredTexels columns(x, width, coarse.width);
-      WeightedTexel sum{V3f(0, 0, 0), 0};
-      for (std::uint32_t j = rows.first(); j < rows.end(); ++j) {
-        for (std::uint32_t i = columns.first(); i < columns.end(); ++i) {
-          const WeightedTexel one = texel(std::size_t{j} * width + i);
-          const float share = rows.share(j) * columns.share(i);
-          sum.color += one.color * share;
-          sum.weight += one.weight * share;
-        }
-      }
-      const std::size_t to = std::size_t{y} * coarse.width + x;
-      coarse.color[to] = sum.color;
-      coarse.weight[to] = sum.weight;
-    }
-  });
-  return coarse;
-}
-
 [[noreturn]] void refuse_size(const Scene& scene, const char* what) {
   throw Error(ErrorKind::failed,
               fmt::format("{}: too many {} for the albedo's indices; leave it out of --passes",
@@ -128,7 +43,7 @@ WeightedLevel coarser(std::uint32_t width, std::uint32_t height, const Texel& te
 
 /// Appends the texture and its mip levels. Returns where each begins.
 std::vector<uint> pack_levels(const Scene& scene, const ColorTexture& texture,
-                              std::vector<uint>& texels) {
+                              const TexelWeights& weights, std::vector<uint>& texels) {
   std::vector<uint> offsets;
   const auto begin = [&] {
     if (texels.size() >= std::numeric_limits<uint>::max()) refuse_size(scene, "texels");
@@ -143,15 +58,15 @@ std::vector<uint> pack_levels(const Scene& scene, const ColorTexture& texture,
   };
   std::array<uint, 256> red{}, green{}, blue{};
   for (std::size_t c = 0; c < 256; ++c) {
-    red[c] = code(table()[c], DAPPLE_RED_CODES);
-    green[c] = code(table()[c], DAPPLE_GREEN_CODES) << 11;
-    blue[c] = code(table()[c], DAPPLE_BLUE_CODES) << 22;
+    red[c] = code(linear_of_codes()[c], DAPPLE_RED_CODES);
+    green[c] = code(linear_of_codes()[c], DAPPLE_GREEN_CODES) << 11;
+    blue[c] = code(linear_of_codes()[c], DAPPLE_BLUE_CODES) << 22;
   }
   append(texture.rgb.size() / 3, [&](std::size_t i) {
     const std::uint8_t* texel = &texture.rgb[3 * i];
     return red[texel[0]] | green[texel[1]] | blue[texel[2]];
   });
-  for (const ColorLevel& level : color_mip_levels(texture)) {
+  for (const ColorLevel& level : color_mip_levels(texture, weights)) {
     if (offsets.size() > DAPPLE_MAX_MIPS) break;
     append(level.color.size(), [&](std::size_t i) { return packed(level.color[i]); });
   }
@@ -159,15 +74,16 @@ std::vector<uint> pack_levels(const Scene& scene, const ColorTexture& texture,
 }
 
 void pack_materials(const Scene& scene, SurfaceColors& colors) {
-  std::vector<std::vector<uint>> levels;
-  for (const ColorTexture& texture : scene.color_textures)
-    levels.push_back(pack_levels(scene, texture, colors.texels));
+  std::map<std::pair<int, TexelWeights>, std::vector<uint>> levels;
   for (const Material& material : scene.materials) {
     ColorMaterial record{};
     for (int channel = 0; channel < 3; ++channel) record.color[channel] = material.color[channel];
     if (material.color_texture >= 0) {
       const ColorTexture& texture = scene.color_textures[material.color_texture];
-      const std::vector<uint>& offsets = levels[material.color_texture];
+      const TexelWeights weights = texel_weights(material);
+      const auto [known, is_new] = levels.try_emplace({material.color_texture, weights});
+      if (is_new) known->second = pack_levels(scene, texture, weights, colors.texels);
+      const std::vector<uint>& offsets = known->second;
       record.mips = static_cast<uint>(offsets.size()) - 1;
       record.width = texture.width;
       record.height = texture.height;
@@ -315,23 +231,6 @@ void pack_mesh(const Scene& scene, const MeshEntries& entries, std::size_t first
 
 }  // namespace
 
-std::vector<ColorLevel> color_mip_levels(const ColorTexture& texture) {
-  std::vector<ColorLevel> levels;
-  WeightedLevel level{texture.width, texture.height, {}, {}};
-  while (level.width > 1 || level.height > 1) {
-    level = levels.empty() ? coarser(level.width, level.height,
-                                     [&](std::size_t i) { return texel_of(texture, i); })
-                           : coarser(level.width, level.height, [&](std::size_t i) {
-                               return WeightedTexel{level.color[i], level.weight[i]};
-                             });
-    ColorLevel mean{level.width, level.height, std::vector<V3f>(level.color.size())};
-    tbb::parallel_for(std::size_t{0}, mean.color.size(),
-                      [&](std::size_t i) { mean.color[i] = level.color[i] / level.weight[i]; });
-    levels.push_back(std::move(mean));
-  }
-  return levels;
-}
-
 Checksum color_key(const Scene& scene) {
   ChecksumStream key;
   for (const ColorTexture& texture : scene.color_textures) {
@@ -346,6 +245,7 @@ Checksum color_key(const Scene& scene) {
   for (const Material& material : scene.materials) {
     for (int channel = 0; channel < 3; ++channel) key.add_value(material.color[channel]);
     key.add_value(material.color_texture);
+    key.add_value(texel_weights(material).least);
   }
   for (const Mesh& mesh : scene.meshes) {
     key.add_range(mesh.materials);

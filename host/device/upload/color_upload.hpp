@@ -26,15 +26,4 @@ std::vector<uint> pack_color_words(const Scene& scene, const SceneBvh& bvh);
 /// Throws Error failed if there are more words or texels than indices can represent.
 SurfaceColors pack_colors(const Scene& scene, const SceneBvh& bvh);
 
-/// One level of a colour texture, row by row, linear.
-struct ColorLevel {
-  std::uint32_t width = 0, height = 0;
-  std::vector<V3f> color;
-};
-
-/// The levels above the texture itself. Level k is half as wide and high as level k - 1, rounded
-/// down, and at least 1. Texels are averaged by their alphas, so that the unseen ones of a cut-out
-/// do not colour the others; where all alphas are 0 they count the same.
-std::vector<ColorLevel> color_mip_levels(const ColorTexture& texture);
-
 }  // namespace dapple

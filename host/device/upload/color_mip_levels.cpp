@@ -1,0 +1,135 @@
+#include "device/upload/color_mip_levels.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace dapple {
+namespace {
+
+/// The sRGB transfer function of IEC 61966-2-1.
+float linear_of(std::size_t code) {
+  const double value = static_cast<double>(code) / 255;
+  return static_cast<float>(value <= 0.04045 ? value / 12.92
+                                             : std::pow((value + 0.055) / 1.055, 2.4));
+}
+
+/// A mip level: sums of colours times weights, and sums of weights.
+struct WeightedLevel {
+  std::uint32_t width = 0, height = 0;
+  std::vector<V3f> color;
+  std::vector<float> weight;
+};
+
+/// A colour and its weight.
+struct WeightedTexel {
+  V3f color;
+  float weight;
+};
+
+/// How much a texel counts. A little weight stays where it is not seen, for texels among which
+/// there is no other.
+float weight_of(const ColorTexture& texture, const TexelWeights& weights, std::size_t i) {
+  constexpr float kUnseen = 1e-4f;
+  if (texture.alpha.empty() || weights.least == TexelWeights::kEqual) return 1;
+  const std::uint8_t alpha = texture.alpha[i];
+  if (weights.least == TexelWeights::kByAlpha)
+    return std::max(kUnseen, static_cast<float>(alpha) / 255);
+  return alpha >= weights.least ? 1 : kUnseen;
+}
+
+WeightedTexel texel_of(const ColorTexture& texture, const TexelWeights& weights, std::size_t i) {
+  const std::uint8_t* texel = &texture.rgb[3 * i];
+  const auto& linear = linear_of_codes();
+  const float weight = weight_of(texture, weights, i);
+  return {V3f(linear[texel[0]], linear[texel[1]], linear[texel[2]]) * weight, weight};
+}
+
+/// Texels of a finer level that a coarse one covers along a side, and how much of them.
+class CoveredTexels {
+ public:
+  CoveredTexels(std::uint32_t at, std::uint32_t fine, std::uint32_t coarse)
+      : coarse_(coarse), begin_(std::uint64_t{at} * fine), end_(begin_ + fine) {}
+
+  [[nodiscard]] std::uint32_t first() const { return static_cast<std::uint32_t>(begin_ / coarse_); }
+  [[nodiscard]] std::uint32_t end() const {
+    return static_cast<std::uint32_t>((end_ + coarse_ - 1) / coarse_);
+  }
+  [[nodiscard]] float share(std::uint32_t texel) const {
+    const std::uint64_t from = texel * coarse_;
+    return static_cast<float>(std::min(end_, from + coarse_) - std::max(begin_, from)) /
+           static_cast<float>(coarse_);
+  }
+
+ private:
+  std::uint64_t coarse_, begin_, end_;  ///< in parts of a fine texel
+};
+
+/// Sums of the texels of a finer level that each texel covers: two by two, or parts of three where
+/// a size is odd.
+template <class Texel>
+WeightedLevel coarser(std::uint32_t width, std::uint32_t height, const Texel& texel) {
+  WeightedLevel coarse{std::max(1u, width / 2), std::max(1u, height / 2), {}, {}};
+  coarse.color.resize(std::size_t{coarse.width} * coarse.height);
+  coarse.weight.resize(coarse.color.size());
+  tbb::parallel_for(0u, coarse.height, [&](std::uint32_t y) {
+    const CoveredTexels rows(y, height, coarse.height);
+    for (std::uint32_t x = 0; x < coarse.width; ++x) {
+      const CoveredTexels columns(x, width, coarse.width);
+      WeightedTexel sum{V3f(0, 0, 0), 0};
+      for (std::uint32_t j = rows.first(); j < rows.end(); ++j) {
+        for (std::uint32_t i = columns.first(); i < columns.end(); ++i) {
+          const WeightedTexel one = texel(std::size_t{j} * width + i);
+          const float share = rows.share(j) * columns.share(i);
+          sum.color += one.color * share;
+          sum.weight += one.weight * share;
+        }
+      }
+      const std::size_t to = std::size_t{y} * coarse.width + x;
+      coarse.color[to] = sum.color;
+      coarse.weight[to] = sum.weight;
+    }
+  });
+  return coarse;
+}
+
+}  // namespace
+
+const std::array<float, 256>& linear_of_codes() {
+  static const std::array<float, 256> kTable = [] {
+    std::array<float, 256> values{};
+    for (std::size_t code = 0; code < values.size(); ++code) values[code] = linear_of(code);
+    return values;
+  }();
+  return kTable;
+}
+
+TexelWeights texel_weights(const Material& material) {
+  if (material.alpha_mode == AlphaMode::opaque || material.alpha_texture < 0) return {};
+  if (material.alpha_mode == AlphaMode::blend) return {TexelWeights::kByAlpha};
+  int least = 0;
+  while (least < 256 && material.alpha * (static_cast<float>(least) / 255) < material.alpha_cutoff)
+    ++least;
+  return {least};
+}
+
+std::vector<ColorLevel> color_mip_levels(const ColorTexture& texture, const TexelWeights& weights) {
+  std::vector<ColorLevel> levels;
+  WeightedLevel level{texture.width, texture.height, {}, {}};
+  while (level.width > 1 || level.height > 1) {
+    level = levels.empty() ? coarser(level.width, level.height,
+                                     [&](std::size_t i) { return texel_of(texture, weights, i); })
+                           : coarser(level.width, level.height, [&](std::size_t i) {
+                               return WeightedTexel{level.color[i], level.weight[i]};
+                             });
+    ColorLevel mean{level.width, level.height, std::vector<V3f>(level.color.size())};
+    tbb::parallel_for(std::size_t{0}, mean.color.size(),
+                      [&](std::size_t i) { mean.color[i] = level.color[i] / level.weight[i]; });
+    levels.push_back(std::move(mean));
+  }
+  return levels;
+}
+
+}  // namespace dapple
