@@ -6,6 +6,11 @@
 
 namespace dapple {
 
+/// scene_bounds() down to the lowest vertex: those of tilted instances of one mesh reach below it.
+/// Of scenes that need more than 2^27 vertices for that, to the lowest of some and the others'
+/// boxes. Throws as scene_bounds().
+Box3f bounds_to_stand_on(const Scene& scene);
+
 /// Adds an opaque square under `bounds`, 200 times as wide, lower by 1e-5 of their longest side.
 /// Throws Error input when they are empty.
 void add_ground(Scene& scene, const Box3f& bounds);

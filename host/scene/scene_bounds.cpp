@@ -6,11 +6,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
 
 #include "dapple/scene.hpp"
 #include "scene/check/invertible.hpp"
 #include "scene/check/scene_check.hpp"
 #include "scene/checked_bounds.hpp"
+#include "scene/ground.hpp"
 
 namespace dapple {
 namespace {
@@ -83,6 +87,30 @@ Box3f checked_bounds(const Scene& scene, const M44f& transform) {
     if (box.isEmpty()) box = mesh_bounds(mesh, M44f{});
     if (!box.isEmpty()) bounds.extendBy(Imath::transform(box, instance.to_world * transform));
   }
+  return bounds;
+}
+
+Box3f bounds_to_stand_on(const Scene& scene) {
+  constexpr std::size_t kMostVertices = 1u << 27;
+  Box3f bounds = scene_bounds(scene);
+  std::vector<Box3f> of_mesh;
+  for (const Mesh& mesh : scene.meshes) of_mesh.push_back(mesh_bounds(mesh, M44f{}));
+  std::vector<std::pair<float, const Instance*>> by_height;  // of their boxes
+  for (const Instance& instance : scene.instances)
+    if (is_placed(instance) && !of_mesh[instance.mesh].isEmpty())
+      by_height.emplace_back(Imath::transform(of_mesh[instance.mesh], instance.to_world).min.y,
+                             &instance);
+  std::sort(by_height.begin(), by_height.end());
+  float lowest = std::numeric_limits<float>::infinity();
+  std::size_t visited = 0;
+  for (const auto& [height, instance] : by_height) {
+    if (height >= lowest) break;
+    const Mesh& mesh = scene.meshes[instance->mesh];
+    visited += mesh.indices.size();
+    lowest = std::min(
+        lowest, visited < kMostVertices ? mesh_bounds(mesh, instance->to_world).min.y : height);
+  }
+  if (std::isfinite(lowest)) bounds.min.y = lowest;
   return bounds;
 }
 

@@ -53,7 +53,7 @@ void use_lights(Scene& scene, const std::vector<Light>& lights) {
     if (light.environment) scene.files.push_back(light.environment->file);
 }
 
-void add_ground(Scene& scene) { add_ground(scene, scene_bounds(scene)); }
+void add_ground(Scene& scene) { add_ground(scene, bounds_to_stand_on(scene)); }
 
 void add_ground(Scene& scene, const Box3f& bounds) {
   if (bounds.isEmpty()) {

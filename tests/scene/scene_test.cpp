@@ -171,6 +171,19 @@ TEST(AddGround, IsOpaqueTwoHundredTimesAsWideAndJustBelowTheLowestPoint) {
   EXPECT_EQ(scene.materials.back().alpha_mode, AlphaMode::opaque);
 }
 
+TEST(AddGround, IsBelowTheLowestVertexOfTiltedInstancesNotBelowTheirBoxes) {
+  const Mesh mesh = triangle_mesh("a", {-1, 0, -1}, {1, 0, 1}, {0, 2, 0});
+  const M44f tilted = M44f().setEulerAngles(V3f(0, 0, 0.4f)),
+             aside = tilted * translation({9, 0.1f, 0});
+  Scene shared = scene_of({mesh}, {placed(0, tilted), placed(0, aside)});
+  Scene apart = scene_of({mesh, mesh}, {placed(0, tilted), placed(1, aside)});
+  add_ground(shared);
+  add_ground(apart);
+  const float height = apart.instances.back().to_world[3][1];
+  EXPECT_NEAR(shared.instances.back().to_world[3][1], height, 1e-4f);
+  EXPECT_LT(scene_bounds(shared).min.y, -0.3f) << "the box reaches further";
+}
+
 TEST(Merge, KeepsEveryWorldSpaceTriangleWithItsFrontAndMakesOneMesh) {
   Scene scene = scene_of(
       {unit_triangle("a"), triangle_mesh("b", {1, 1, 1}, {2, 3, 4}, {0, 5, 1}), unit_triangle("c")},

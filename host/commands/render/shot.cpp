@@ -68,7 +68,7 @@ Shot::Defaults Shot::choose_defaults(const Scene& first) const {
   if (!options_.look) chosen.camera_name = camera.name;
   chosen.focus_distance = camera.focus_distance;
   if (options_.light && first.lights.empty()) chosen.lights = daylight(camera);
-  if (options_.ground) chosen.ground_under = scene_bounds(first);
+  if (options_.ground) chosen.ground_under = bounds_to_stand_on(first);
   return chosen;
 }
 
