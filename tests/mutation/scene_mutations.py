@@ -228,6 +228,21 @@ MUTATIONS = [
         "1.0, value",
         r"^InstanceBake\."),
     Mutation(
+        "borders-of-clamped-textures-in-means", "host/bvh/opacity/texture_integrals.cpp",
+        "if (levels_->is_beyond_border(corners_.uv)) return;",
+        "if (levels_->is_beyond_border({})) return;",
+        r"^OpacityMipLevels\."),
+    Mutation(
+        "rays-average-borders-of-clamped-textures", "host/bvh/opacity/triangle_opacity.cpp",
+        "if (averaged && !is_beyond_border(corners.uv, texture.wrap_s, texture.wrap_t))",
+        "if (averaged)",
+        r"^OpacityMipLevels\."),
+    Mutation(
+        "cut-outs-not-interpolated", "host/bvh/opacity/opacity_mip_levels.cpp",
+        "cutoff >= 0 && !texture.nearest;",
+        "cutoff >= 0 && false;",
+        r"^OpacityMipLevels\."),
+    Mutation(
         "mirrored-emitters-face-inwards", "host/device/upload/light_upload.cpp",
         "const bool mirrored = Imath::M44d(instance.to_world).determinant() < 0;",
         "const bool mirrored = false;",

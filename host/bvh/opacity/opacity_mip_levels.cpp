@@ -3,6 +3,7 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace dapple {
@@ -76,7 +77,59 @@ OpacityMipLevels::Level coarser(const OpacityMipLevels::Level& fine) {
   return coarse;
 }
 
+/// Alphas of the texels around one, row by row.
+struct Neighbourhood {
+  std::array<float, 9> alpha;
+
+  Neighbourhood(const Texture& texture, int x, int y) {
+    const auto width = static_cast<int>(texture.width), height = static_cast<int>(texture.height);
+    for (int row = 0; row < 3; ++row)
+      for (int column = 0; column < 3; ++column)
+        alpha[static_cast<std::size_t>(3 * row + column)] =
+            static_cast<float>(
+                texture
+                    .alpha[static_cast<std::size_t>(wrap(y + row - 1, height, texture.wrap_t)) *
+                               texture.width +
+                           static_cast<std::size_t>(wrap(x + column - 1, width, texture.wrap_s))]) *
+            (1.0f / 255.0f);
+  }
+
+  /// Bilinear, at a point of the middle texel's square, [0,1].
+  [[nodiscard]] float at(float x, float y) const {
+    const std::size_t left = x < 0.5f ? 0 : 1, top = y < 0.5f ? 0 : 1;
+    const float fx = x < 0.5f ? x + 0.5f : x - 0.5f, fy = y < 0.5f ? y + 0.5f : y - 0.5f;
+    const float* row = &alpha[3 * top + left];
+    return (row[0] * (1 - fx) + row[1] * fx) * (1 - fy) + (row[3] * (1 - fx) + row[4] * fx) * fy;
+  }
+};
+
+/// The share of a texel's square that is opaque, by the middles of four by four parts.
+float opaque_share(const Texture& texture, int x, int y, float factor, float cutoff) {
+  constexpr int kParts = 4;
+  const Neighbourhood around(texture, x, y);
+  const auto [least, most] = std::minmax_element(around.alpha.begin(), around.alpha.end());
+  if (thresholded(*least * factor, cutoff) == thresholded(*most * factor, cutoff))
+    return thresholded(*least * factor, cutoff);
+  float sum = 0;
+  for (int j = 0; j < kParts; ++j)
+    for (int i = 0; i < kParts; ++i)
+      sum += thresholded(around.at((static_cast<float>(i) + 0.5f) / kParts,
+                                   (static_cast<float>(j) + 0.5f) / kParts) *
+                             factor,
+                         cutoff);
+  return sum / (kParts * kParts);
+}
+
 }  // namespace
+
+bool is_beyond_border(const std::array<V2f, 3>& uvs, Wrap wrap_s, Wrap wrap_t) {
+  constexpr float kBeside = 0.02f;  // what exporters leave of roundings, and of bleeding
+  const auto is_outside = [](float at) { return at < -kBeside || at > 1 + kBeside; };
+  return std::any_of(uvs.begin(), uvs.end(), [&](const V2f& uv) {
+    return (wrap_s == Wrap::clamp && is_outside(uv.x)) ||
+           (wrap_t == Wrap::clamp && is_outside(uv.y));
+  });
+}
 
 float thresholded(float alpha, float cutoff) {
   if (cutoff < 0.0f) return std::clamp(alpha, 0.0f, 1.0f);
@@ -89,10 +142,18 @@ OpacityMipLevels::OpacityMipLevels(const Texture& texture, float factor, float c
       wrap_t_(texture.wrap_t) {
   Level base{static_cast<int>(texture.width), static_cast<int>(texture.height), {}};
   base.opacity.resize(texture.alpha.size());
-  std::transform(texture.alpha.begin(), texture.alpha.end(), base.opacity.begin(),
-                 [&](std::uint8_t a) {
-                   return thresholded(static_cast<float>(a) * (1.0f / 255.0f) * factor, cutoff);
-                 });
+  const bool is_cut_bilinearly = cutoff >= 0 && !texture.nearest;
+  tbb::parallel_for(0, base.height, [&](int y) {
+    for (int x = 0; x < base.width; ++x) {
+      const std::size_t i =
+          static_cast<std::size_t>(y) * texture.width + static_cast<std::size_t>(x);
+      base.opacity[i] =
+          is_cut_bilinearly
+              ? opaque_share(texture, x, y, factor, cutoff)
+              : thresholded(static_cast<float>(texture.alpha[i]) * (1.0f / 255.0f) * factor,
+                            cutoff);
+    }
+  });
   levels_.push_back(std::move(base));
   while (levels_.back().width > 1 || levels_.back().height > 1)
     levels_.push_back(coarser(levels_.back()));

@@ -2,6 +2,7 @@
 // many texels (kernels/opacity/opacity_lookup.clh).
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -13,8 +14,14 @@ namespace dapple {
 /// alpha itself, clamped to [0,1].
 float thresholded(float alpha, float cutoff);
 
+/// Whether texture coordinates lie beyond [0,1] of an axis on which the texture is clamped. What
+/// they see there is its border, which coarser texels mix with what is inside.
+bool is_beyond_border(const std::array<V2f, 3>& uvs, Wrap wrap_s, Wrap wrap_t);
+
 /// The opacities of a texture, averaged over 1, 2, 4... texels along each axis (Williams,
-/// "Pyramidal Parametrics", 1983). Cut-out textures are thresholded before they are averaged.
+/// "Pyramidal Parametrics", 1983). Cut-out textures are thresholded before they are averaged:
+/// texels of those that are looked up bilinearly have the share of their square that is then
+/// opaque.
 class OpacityMipLevels {
  public:
   /// Level k is half as wide and high as level k - 1, rounded down, and at least 1.
@@ -33,6 +40,10 @@ class OpacityMipLevels {
   [[nodiscard]] const std::vector<Level>& levels() const { return levels_; }
 
   [[nodiscard]] V2f size() const { return size_; }
+
+  [[nodiscard]] bool is_beyond_border(const std::array<V2f, 3>& uvs) const {
+    return dapple::is_beyond_border(uvs, wrap_s_, wrap_t_);
+  }
 
  private:
   [[nodiscard]] float bilinear(const Level& level, V2f uv) const;

@@ -8,6 +8,18 @@
 #include "bvh/opacity/triangle_opacity.hpp"
 
 namespace dapple {
+namespace {
+
+/// Whether alphas of corners differ.
+bool is_varied(const TexturedCorners& corners) {
+  return corners.alpha[0] != corners.alpha[1] || corners.alpha[1] != corners.alpha[2];
+}
+
+/// Of a triangle whose cut-out varies.
+constexpr std::size_t kDivisions = 8;
+
+}  // namespace
+
 std::shared_ptr<const OpacityMipLevels> SharedMipLevels::of(const OpacityTexture& texture) {
   const std::shared_ptr<Entry> entry = entry_of(texture);
   std::call_once(entry->made, [&] {
@@ -44,6 +56,7 @@ TriangleIntegral::TriangleIntegral(const TexturedCorners& corners, const Materia
                                    const OpacityMipLevels* levels)
     : corners_(corners), factor_(material.alpha), cutoff_(cutoff_of(material)), levels_(levels) {
   if (!levels_) return;
+  if (levels_->is_beyond_border(corners_.uv)) return;
   const auto& [a, b, c] = corners_.uv;
   const V2f e1 = (b - a) * levels_->size(), e2 = (c - a) * levels_->size();
   texels_ = 0.5f * std::fabs(e1.x * e2.y - e1.y * e2.x);
@@ -55,19 +68,38 @@ float TriangleIntegral::mean(float u, float v, float share) const {
   const float alpha = factor_ * (alphas[0] * w + alphas[1] * u + alphas[2] * v);
   if (!levels_) return thresholded(alpha, cutoff_);
   const auto& [a, b, c] = corners_.uv;
-  const float mean = levels_->mean(a * w + b * u + c * v, std::sqrt(texels_ * share));
+  const V2f at = a * w + b * u + c * v;
+  if (cutoff_ >= 0.0f && is_varied(corners_)) {
+    constexpr float kMost = 0.5f;  // of a triangle that is looked up at one point
+    if (share > kMost) return mean_of_parts(kDivisions);
+    return thresholded(levels_->mean(at, 1) * alpha, cutoff_);
+  }
+  const float mean = levels_->mean(at, std::sqrt(texels_ * share));
   return cutoff_ < 0.0f ? std::clamp(mean * alpha, 0.0f, 1.0f) : mean;
 }
 
+float TriangleIntegral::mean_of_parts(std::size_t divisions) const {
+  const auto n = static_cast<float>(divisions);
+  const float share = 1 / (n * n);
+  double sum = 0;
+  for (std::size_t i = 0; i < divisions; ++i)
+    for (std::size_t j = 0; i + j < divisions; ++j)
+      for (const float third : {1.0f / 3, 2.0f / 3}) {
+        if (third > 0.5f && i + j + 1 == divisions) continue;  // beyond the third side
+        sum += double{
+            mean((static_cast<float>(i) + third) / n, (static_cast<float>(j) + third) / n, share)};
+      }
+  return static_cast<float>(sum * double{share});
+}
+
 // The mean of a blended texture is linear in the factor, which is applied later. The mean of a
-// cut-out texture is not, so there are mip levels for each factor. The factor is the mean over the
-// corners, rounded.
+// cut-out texture is not, so there are mip levels for each factor, rounded. Where factors vary over
+// a triangle, points of it are looked up.
 OpacityTexture TextureIntegrals::texture_of(const TexturedCorners& corners) const {
   const Material& material = (*materials_)[corners.material];
   const float cutoff = cutoff_of(material);
-  if (cutoff < 0.0f) return {material.alpha_texture, 1.0f, -1.0f};
-  const float factor =
-      material.alpha * (corners.alpha[0] + corners.alpha[1] + corners.alpha[2]) / 3.0f;
+  if (cutoff < 0.0f || is_varied(corners)) return {material.alpha_texture, 1.0f, -1.0f};
+  const float factor = material.alpha * corners.alpha[0];
   return {material.alpha_texture, std::round(factor * 64.0f) / 64.0f, cutoff};
 }
 

@@ -60,10 +60,13 @@ class TriangleIntegral {
   /// Around barycentrics (u, v), over an area that is `share` of the triangle's, [0,1].
   [[nodiscard]] float mean(float u, float v, float share) const;
 
+  /// Of the whole triangle, by the middles of `divisions` times `divisions` parts.
+  [[nodiscard]] float mean_of_parts(std::size_t divisions) const;
+
  private:
   TexturedCorners corners_;
   float factor_, cutoff_;
-  float texels_ = 0;  ///< the triangle's area in the texture
+  float texels_ = 0;  ///< the triangle's area in the texture; 0: it is looked up itself
   const OpacityMipLevels* levels_;
 };
 

@@ -109,7 +109,8 @@ TexturedTriangle textured_triangle(const Scene& scene, const Mesh& mesh, std::ui
     corners.uv[corner] = mesh.uvs[mesh.indices[3 * std::size_t{triangle} + corner]];
   }
   const Texture& texture = scene.textures[material.alpha_texture];
-  if (averaged) corners.texel_size = texel_size(scene, mesh, triangle);
+  if (averaged && !is_beyond_border(corners.uv, texture.wrap_s, texture.wrap_t))
+    corners.texel_size = texel_size(scene, mesh, triangle);
   return pack_textured(corners, texture.wrap_s, texture.wrap_t);
 }
 

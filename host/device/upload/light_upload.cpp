@@ -22,21 +22,6 @@ void store(const V3f& from, float (&to)[3]) {
 /// numbers.
 constexpr std::size_t kMostDivisions = 16, kMostLookups = 1u << 22;
 
-/// Mean opacity of a triangle, by the middles of its parts.
-float mean_opacity(const TriangleIntegral& triangle, std::size_t divisions) {
-  const auto n = static_cast<float>(divisions);
-  const float share = 1 / (n * n);
-  double sum = 0;
-  for (std::size_t i = 0; i < divisions; ++i)
-    for (std::size_t j = 0; i + j < divisions; ++j)
-      for (const float third : {1.0f / 3, 2.0f / 3}) {
-        if (third > 0.5f && i + j + 1 == divisions) continue;  // beyond the third side
-        sum += double{triangle.mean((static_cast<float>(i) + third) / n,
-                                    (static_cast<float>(j) + third) / n, share)};
-      }
-  return static_cast<float>(sum * double{share});
-}
-
 /// The mean opacity of each triangle: what is cut out or transparent does not shine.
 std::vector<float> mean_opacities(const Scene& scene, const OpaqueTexels& texels,
                                   const Mesh& mesh) {
@@ -54,7 +39,7 @@ std::vector<float> mean_opacities(const Scene& scene, const OpaqueTexels& texels
   const std::size_t divisions = std::clamp<std::size_t>(affordable, 1, kMostDivisions);
   auto next = textured.begin();
   for (float& opacity : opacities)
-    if (opacity < 0) opacity = mean_opacity(integrals.of(*next++), divisions);
+    if (opacity < 0) opacity = integrals.of(*next++).mean_of_parts(divisions);
   return opacities;
 }
 

@@ -243,6 +243,7 @@ Texture noise_texture(std::uint32_t width, std::uint32_t height, unsigned seed) 
   Texture texture;
   texture.width = width;
   texture.height = height;
+  texture.nearest = true;  // cut along texels
   std::mt19937 random(seed);
   for (std::uint32_t i = 0; i < width * height; ++i) {
     // Alpha increases to the right, so that a mean over the wrong texels is noticed.
@@ -286,6 +287,7 @@ TEST(OpacityMipLevels, AMeanOverOneTexelIsThatTexel) {
 TEST(OpacityMipLevels, CutOutsAreThresholdedBeforeTheyAreAveraged) {
   Texture checks;
   checks.width = checks.height = 4;
+  checks.nearest = true;
   for (int i = 0; i < 16; ++i) checks.alpha.push_back((i + i / 4) % 2 ? 204 : 51);  // 0.8, 0.2
   const auto mean = [&](float factor, float cutoff) {
     return OpacityMipLevels(checks, factor, cutoff).mean({0.5f, 0.5f}, 4);
@@ -302,12 +304,13 @@ TEST(OpacityMipLevels, AnAlphaThatEqualsTheCutoffIsOpaque) {
   EXPECT_EQ(thresholded(0.0f, 0.0f), 1.0f);
   Texture half;
   half.width = half.height = 2;
+  half.nearest = true;
   half.alpha = {0, 0, 255, 255};
   EXPECT_EQ(OpacityMipLevels(half, 1, 0).mean({0.5f, 0.5f}, 2), 1.0f);
   EXPECT_EQ(OpacityMipLevels(half, 1, 1).mean({0.5f, 0.5f}, 2), 0.5f);
 }
 
-// The mip levels of a cut-out are those of the mean alpha of the triangle's corners.
+// Factors of corners are interpolated before the cut: 0.8 (1 - w) is at least the cutoff.
 TEST(OpacityMipLevels, ACutOutCountsTheAlphasOfAllThreeCorners) {
   Scene scene;
   scene.textures.push_back({"even", 2, 2, std::vector<std::uint8_t>(4, 204)});  // 0.8
@@ -327,8 +330,8 @@ TEST(OpacityMipLevels, ACutOutCountsTheAlphasOfAllThreeCorners) {
   };
   for (const auto& alphas :
        {std::array{0.0f, 1.0f, 1.0f}, {1.0f, 0.0f, 1.0f}, {1.0f, 1.0f, 0.0f}}) {
-    EXPECT_EQ(mean(alphas, 0.5f), 1.0f);  // 0.8 * 2 / 3 is above it
-    EXPECT_EQ(mean(alphas, 0.6f), 0.0f);
+    EXPECT_NEAR(mean(alphas, 0.5f), 1 - 0.625 * 0.625, 0.03);
+    EXPECT_NEAR(mean(alphas, 0.6f), 1 - 0.75 * 0.75, 0.03);
   }
 }
 
