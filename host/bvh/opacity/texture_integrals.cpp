@@ -60,6 +60,8 @@ TriangleIntegral::TriangleIntegral(const TexturedCorners& corners, const Materia
   const auto& [a, b, c] = corners_.uv;
   const V2f e1 = (b - a) * levels_->size(), e2 = (c - a) * levels_->size();
   texels_ = 0.5f * std::fabs(e1.x * e2.y - e1.y * e2.x);
+  const float longest = std::sqrt(std::max({e1.length2(), e2.length2(), (e2 - e1).length2()}));
+  narrowest_ = longest > 0 ? 2 * texels_ / longest : 0;
 }
 
 float TriangleIntegral::mean(float u, float v, float share) const {
@@ -74,7 +76,7 @@ float TriangleIntegral::mean(float u, float v, float share) const {
     if (share > kMost) return mean_of_parts(kDivisions);
     return thresholded(levels_->mean(at, 1) * alpha, cutoff_);
   }
-  const float mean = levels_->mean(at, std::sqrt(texels_ * share));
+  const float mean = levels_->mean(at, std::min(std::sqrt(texels_ * share), narrowest_));
   return cutoff_ < 0.0f ? std::clamp(mean * alpha, 0.0f, 1.0f) : mean;
 }
 

@@ -66,7 +66,8 @@ class TriangleIntegral {
  private:
   TexturedCorners corners_;
   float factor_, cutoff_;
-  float texels_ = 0;  ///< the triangle's area in the texture; 0: it is looked up itself
+  float texels_ = 0;     ///< the triangle's area in the texture; 0: it is looked up itself
+  float narrowest_ = 0;  ///< its least height there: other parts of an atlas stay out
   const OpacityMipLevels* levels_;
 };
 

@@ -15,7 +15,7 @@ namespace dapple {
 namespace {
 
 constexpr std::size_t kGrain = 1 << 14;
-constexpr float kSteps = 1 << 17;
+constexpr float kSteps = 1 << 20;
 /// Bits of the table for each vertex: many of few vertices, whose number would be vague else. Of
 /// many vertices those at an eighth of all places tell enough.
 constexpr std::size_t kBits = 2, kBitsOfFew = 32, kFew = 1 << 16;
@@ -60,7 +60,7 @@ double share_of_places(std::span<const V3f> positions) {
     for (std::size_t v = range.begin(); v < range.end(); ++v) {
       const V3f at = (positions[v] - box.min) * steps + V3f(0.5f);
       const auto step = [](float x) { return static_cast<std::uint64_t>(static_cast<int>(x)); };
-      const std::uint64_t hash = mixed(step(at.x) << 36 | step(at.y) << 18 | step(at.z));
+      const std::uint64_t hash = mixed(step(at.x) << 42 | step(at.y) << 21 | step(at.z));
       if (hash >> 32 & (part - 1)) continue;
       ++found;
       const std::uint64_t bit = hash & (64 * table.size() - 1);

@@ -9,7 +9,7 @@
 
 namespace dapple {
 
-/// The number of different places of vertices over that of vertices, on a grid of 2^17 steps over
+/// The number of different places of vertices over that of vertices, on a grid of 2^20 steps over
 /// their bounds; within 0.02 of it for 100 vertices, 0.005 for a thousand and more (linear
 /// counting: Whang et al., "A Linear-Time Probabilistic Counting Algorithm for Database
 /// Applications", 1990). 1 of no vertices. Linear in these.
