@@ -114,8 +114,8 @@ MUTATIONS = [
         r"^(OpacityMipLevels|MipFootprint|TexturedTriangle)\."),
     Mutation(
         "mip-factor-of-one-corner", "host/bvh/opacity/texture_integrals.cpp",
-        "material.alpha * (corners.alpha[0] + corners.alpha[1] + corners.alpha[2]) / 3.0f;",
-        "material.alpha * corners.alpha[0];",
+        "if (cutoff < 0.0f || is_varied(corners)) return",
+        "if (cutoff < 0.0f) return",
         r"^(TexturedTriangle|OpacityMipLevels|MipFootprint|OpacityModel)\."),
     Mutation(
         "opaque-texels-without-the-last", "host/bvh/opacity/opaque_texels.cpp",

@@ -9,6 +9,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace dapple {
@@ -50,7 +51,8 @@ double share_of_places(std::span<const V3f> positions) {
   const Box3f box = bounds_of(positions);
   const V3f size = box.max - box.min;
   const float longest = std::max({size.x, size.y, size.z});
-  const float steps = longest > 0 ? kSteps / longest : 0;
+  const float steps =
+      longest > 0 ? std::min(kSteps / longest, std::numeric_limits<float>::max()) : 0;
   const std::size_t part = count < kMany ? 1 : kPartOfMany;
   const std::size_t bits = std::bit_ceil(count * (count < kFew ? kBitsOfFew : kBits) / part);
   std::vector<std::uint64_t> table(std::max<std::size_t>(bits / 64, 1));
