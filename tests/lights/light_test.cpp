@@ -238,6 +238,21 @@ TEST(Light, IsNotHiddenByASurfaceInWhosePlaneItLies) {
   }
 }
 
+TEST(Light, AShadeCloseBelowALampHidesItFarFromTheOriginToo) {
+  for (const float x : {0.0f, 30'000.0f}) {
+    Scene scene = point_on_ground();
+    scene.lights.push_back(rect("lamp", {0, 2, 0}, {0.5f, 0, 0}, {0, 0, 0.5f}, {0, -1, 0}));
+    place(scene, square_mesh(4, 1.9f, 1, 0), {});
+    const M44f aside = M44f().setTranslation(V3f(x, 0, 0));
+    for (Instance& instance : scene.instances) instance.to_world = instance.to_world * aside;
+    for (Camera& camera : scene.cameras) camera.to_world = camera.to_world * aside;
+    scene.lights[0].position.x += x;
+    RenderOptions options = one_pixel();
+    options.ao = false;
+    EXPECT_EQ(value(render(scene, options).film, "light.lamp.R"), 0) << x;
+  }
+}
+
 TEST(EmissiveMesh, NeverOccludesItsOwnSamplesAndDoesOccludeAo) {
   for (const V3f& centre : {V3f(0, 1.7f, 0), V3f(1.5f, 2, -0.8f)}) {
     Scene scene = point_on_ground();

@@ -71,6 +71,30 @@ TEST(NumericRange, OneVertexFarAwayIsAFinitePictureOrAnError) {
   }
 }
 
+// As files have them whose vertices are map coordinates and whose nodes bring them to the origin.
+TEST(NumericRange, MeshesFarFromTheirOwnOriginAreNotedIfTheyArePlacedTwice) {
+  for (const std::size_t placements : {1u, 2u}) {
+    Scene scene;
+    scene.materials.emplace_back();
+    Mesh& mesh = scene.meshes.emplace_back();
+    for (std::uint32_t t = 0; t < 300; ++t) {
+      for (const V3f& corner : {V3f(0, 0, 0), V3f(1, 0, 0), V3f(0, 1, 0)})
+        mesh.positions.push_back(corner + V3f(1e6f, 0, static_cast<float>(t) / 100));
+      for (std::uint32_t k = 0; k < 3; ++k) mesh.indices.push_back(3 * t + k);
+      mesh.materials.push_back(0);
+    }
+    for (std::size_t i = 0; i < placements; ++i)
+      scene.instances.push_back(
+          {0, M44f().setTranslation(V3f(-1e6f + 5 * static_cast<float>(i), 0, 0))});
+    check_numeric_range(scene);
+    ASSERT_EQ(scene.warnings.size(), placements - 1);
+    if (placements > 1) {
+      EXPECT_NE(scene.warnings[0].find("from its own origin"), std::string::npos)
+          << scene.warnings[0];
+    }
+  }
+}
+
 TEST(NumericRange, LightsAndCamerasFarAwayAreRefusedByName) {
   GltfBuilder builder = plain_stage();
   builder.doc["extensions"]["KHR_lights_punctual"]["lights"] = {
