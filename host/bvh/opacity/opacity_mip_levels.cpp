@@ -83,15 +83,15 @@ struct Neighbourhood {
 
   Neighbourhood(const Texture& texture, int x, int y) {
     const auto width = static_cast<int>(texture.width), height = static_cast<int>(texture.height);
-    for (int row = 0; row < 3; ++row)
-      for (int column = 0; column < 3; ++column)
-        alpha[static_cast<std::size_t>(3 * row + column)] =
-            static_cast<float>(
-                texture
-                    .alpha[static_cast<std::size_t>(wrap(y + row - 1, height, texture.wrap_t)) *
-                               texture.width +
-                           static_cast<std::size_t>(wrap(x + column - 1, width, texture.wrap_s))]) *
-            (1.0f / 255.0f);
+    auto to = alpha.begin();
+    for (const int row : {y - 1, y, y + 1}) {
+      const auto first =
+          static_cast<std::size_t>(wrap(row, height, texture.wrap_t)) * texture.width;
+      for (const int column : {x - 1, x, x + 1}) {
+        const auto at = first + static_cast<std::size_t>(wrap(column, width, texture.wrap_s));
+        *to++ = static_cast<float>(texture.alpha[at]) * (1.0f / 255.0f);
+      }
+    }
   }
 
   /// Bilinear, at a point of the middle texel's square, [0,1].

@@ -15,7 +15,7 @@ bool is_varied(const TexturedCorners& corners) {
   return corners.alpha[0] != corners.alpha[1] || corners.alpha[1] != corners.alpha[2];
 }
 
-/// Of a triangle whose cut-out varies.
+/// Parts of a side of a triangle whose cut-out varies over it.
 constexpr std::size_t kDivisions = 8;
 
 }  // namespace
@@ -72,7 +72,7 @@ float TriangleIntegral::mean(float u, float v, float share) const {
   const auto& [a, b, c] = corners_.uv;
   const V2f at = a * w + b * u + c * v;
   if (cutoff_ >= 0.0f && is_varied(corners_)) {
-    constexpr float kMost = 0.5f;  // of a triangle that is looked up at one point
+    constexpr float kMost = 0.5f;  // the largest share of a triangle that one point stands for
     if (share > kMost) return mean_of_parts(kDivisions);
     return thresholded(levels_->mean(at, 1) * alpha, cutoff_);
   }

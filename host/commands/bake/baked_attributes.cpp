@@ -288,13 +288,14 @@ std::vector<NewAttribute> baked_attributes(const SourceFile& file, const Scene& 
   const BakeChannel& channel = targets.channel;
   const bool to_normal = targets.bent_channel == "NORMAL";
   const std::vector<bool> mirrored = mirrored_skins(file, scene);
+  const bool any_mirrored = std::find(mirrored.begin(), mirrored.end(), true) != mirrored.end();
   std::vector<BakedMesh> turned;
-  for (std::size_t m = 0; m < result.meshes.size(); ++m) {
-    turned.push_back(to_normal ? as_normals(scene.meshes[m], result.meshes[m], metric_of(scene, m))
-                               : result.meshes[m]);
-    for (V3f& bent : turned.back().bent) bent.x = mirrored[m] ? -bent.x : bent.x;
+  for (std::size_t m = 0; (to_normal || any_mirrored) && m < result.meshes.size(); ++m) {
+    turned.push_back(result.meshes[m]);
+    if (to_normal) turned[m] = as_normals(scene.meshes[m], turned[m], metric_of(scene, m));
+    for (V3f& bent : turned[m].bent) bent.x = mirrored[m] ? -bent.x : bent.x;
   }
-  const FileSums sums(file, scene, turned, channel.attribute);
+  const FileSums sums(file, scene, turned.empty() ? result.meshes : turned, channel.attribute);
   std::vector<NewAttribute> attributes;
   std::map<std::pair<gltf::VertexKey, std::uint32_t>, std::size_t> numbers;
   for (const auto& [primitive, from] : sums.primitives) {

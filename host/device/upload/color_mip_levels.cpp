@@ -3,18 +3,12 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
+
+#include "scene/images/color.hpp"
 
 namespace dapple {
 namespace {
-
-/// The sRGB transfer function of IEC 61966-2-1.
-float linear_of(std::size_t code) {
-  const double value = static_cast<double>(code) / 255;
-  return static_cast<float>(value <= 0.04045 ? value / 12.92
-                                             : std::pow((value + 0.055) / 1.055, 2.4));
-}
 
 /// A mip level: sums of colours times weights, and sums of weights.
 struct WeightedLevel {
@@ -100,7 +94,8 @@ WeightedLevel coarser(std::uint32_t width, std::uint32_t height, const Texel& te
 const std::array<float, 256>& linear_of_codes() {
   static const std::array<float, 256> kTable = [] {
     std::array<float, 256> values{};
-    for (std::size_t code = 0; code < values.size(); ++code) values[code] = linear_of(code);
+    for (std::size_t code = 0; code < values.size(); ++code)
+      values[code] = static_cast<float>(linear_from_srgb(static_cast<double>(code) / 255));
     return values;
   }();
   return kTable;

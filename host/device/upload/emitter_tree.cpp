@@ -8,7 +8,7 @@
 #include <numeric>
 #include <vector>
 
-#include "dapple/scene.hpp"
+#include "device/upload/stored_vector.hpp"
 
 namespace dapple {
 namespace {
@@ -17,8 +17,6 @@ namespace {
 constexpr std::size_t kGrain = 4096;
 /// Boxes are stored larger by this part of their largest coordinate, more than roundings.
 constexpr float kRounding = 1e-6f;
-
-V3f vector_of(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
 
 Box3f box_of(const EmitterTriangle& t) {
   const V3f vertex = vector_of(t.vertex);
@@ -42,10 +40,6 @@ void store_box(const Box3f& box, float (&stored)[6]) {
 constexpr double kLong = 3, kNeverLong = 1e5;
 /// How many triangles of a light may be added, and how many a piece of a longest side stands for.
 constexpr double kMostPieces = 1 << 17, kPiecesOfSide = 4;
-
-void store(const V3f& from, float (&to)[3]) {
-  for (int axis = 0; axis < 3; ++axis) to[axis] = from[axis];
-}
 
 double longest_side(const EmitterTriangle& t) {
   const V3f edge1 = vector_of(t.edge1), edge2 = vector_of(t.edge2);

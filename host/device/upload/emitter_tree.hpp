@@ -12,7 +12,7 @@
 namespace dapple {
 
 /// Divides triangles that are much longer than wide, such as those of twigs, into shorter ones: a
-/// sphere around a long one says little of where it is. Adds at most 131,072. Of `triangles` only
+/// box around a long one says little of where it is. Adds at most 131,072. Of `triangles` only
 /// vertex, edges and area count.
 void divide_long_emitters(std::vector<EmitterTriangle>& triangles);
 

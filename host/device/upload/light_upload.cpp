@@ -9,14 +9,11 @@
 #include "bvh/opacity/triangle_opacity.hpp"
 #include "dapple/error.hpp"
 #include "device/upload/emitter_tree.hpp"
+#include "device/upload/stored_vector.hpp"
 #include "scene/lights/rect_axes.hpp"
 
 namespace dapple {
 namespace {
-
-void store(const V3f& from, float (&to)[3]) {
-  for (int axis = 0; axis < 3; ++axis) to[axis] = from[axis];
-}
 
 /// Parts of equal size that a textured triangle's opacity is looked up in: squares of these
 /// numbers.
