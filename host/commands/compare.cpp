@@ -42,23 +42,23 @@ void check(const CompareArguments& a) {
   check_outputs_spare(outputs, {a.a, a.b});
 }
 
-void keep_layer(LayerMatch& match, const std::string& layer) {
+void require_layer(const LayerMatch& match, const std::string& layer) {
   std::string names;
-  for (const LayerPair& pair : match.pairs) names += " " + pair.name;
-  std::erase_if(match.pairs, [&](const LayerPair& pair) { return pair.name != layer; });
-  if (match.pairs.empty()) {
-    throw Error(ErrorKind::usage,
-                "--layer " + layer + ": no such layer in both; there are:" + names);
+  for (const LayerPair& pair : match.pairs) {
+    if (pair.name == layer) return;
+    names += " " + pair.name;
   }
+  throw Error(ErrorKind::usage, "--layer " + layer + ": no such layer in both; there are:" + names);
 }
 
 LayerMatch choose_layers(const CompareArguments& arguments, const Film& a, const Film& b) {
-  LayerMatch match = match_layers(a, b);
+  const LayerMatch match = match_layers(a, b);
   if (match.pairs.empty()) {
     throw Error(ErrorKind::input, arguments.a + " and " + arguments.b + " have no layer in common");
   }
-  if (!arguments.layer.empty()) keep_layer(match, arguments.layer);
-  return match;
+  if (arguments.layer.empty()) return match;
+  require_layer(match, arguments.layer);
+  return match_layers(a, b, arguments.layer);
 }
 
 void write_heat_map(const LayerPair& layer, const Film& b, const CompareArguments& a) {
@@ -105,8 +105,8 @@ Run add_compare_command(CLI::App& app) {
   app.add_option("--png", a->png, "Write a heat map of |A - B|, of --layer or the first layer");
   app.add_option("--html", a->html, "Write a page with the images, heat maps and figures");
   app.add_option("--max-rmse", a->max_rmse,
-                 "Exit with 5 if a layer's RMSE is larger; Z, P, motion, samples, visits and "
-                 "Cryptomattes count only with --layer");
+                 "Exit with 5 if a layer's RMSE is larger, or A lacks one; Z, P, motion, samples, "
+                 "visits and Cryptomattes count only with --layer");
   app.add_option(
          "--scale", a->scale,
          "The last colour of heat maps is a difference of the layer's range divided by "

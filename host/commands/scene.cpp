@@ -17,6 +17,7 @@ namespace {
 struct SceneArguments {
   std::string name, output;
   std::vector<std::string> parameters;
+  bool quiet = false;
 };
 
 /// "tree" and {"leaves=5", "seed=2"} to "scene:tree?leaves=5&seed=2".
@@ -51,11 +52,13 @@ Run add_scene_command(CLI::App& app) {
   app.add_option("NAME", a->name, "One of the scenes below")->required();
   app.add_option("PARAMETER", a->parameters, "KEY=VALUE, any number of them");
   app.add_option("-o,--output", a->output, "GLB file to write")->required();
+  app.add_flag("-q,--quiet", a->quiet, "Print only errors");
   app.footer(catalogue());
   return [a] {
     check_outputs({{"--output", a->output}});
     const Scene scene = make_procedural(scene_name(*a));
     write_glb(scene, a->output);
+    if (a->quiet) return;
     std::size_t triangles = 0, segments = 0;
     for (const Mesh& mesh : scene.meshes)
       (mesh.has_strands() ? segments : triangles) += mesh.primitive_count();

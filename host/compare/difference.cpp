@@ -152,6 +152,11 @@ std::string failure(const Comparison& comparison, std::optional<double> max_rmse
     }
     if (d.rmse > *max_rmse) add(fmt::format("layer {} has RMSE {:.6g}", d.layer, d.rmse));
   }
+  if (max_rmse) {
+    for (const std::string& name : comparison.only_b) {
+      if (!is_exempt(layer_of(name))) add(fmt::format("{} is only in {}", name, comparison.name_b));
+    }
+  }
   if (reasons.empty()) return {};
   const std::string limit = max_rmse ? fmt::format("; --max-rmse is {:.6g}", *max_rmse) : "";
   return fmt::format("{} and {} differ: {}{}", comparison.name_a, comparison.name_b, reasons,

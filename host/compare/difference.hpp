@@ -53,9 +53,9 @@ void require_same_windows(const Film& a, const Film& b, const std::string& name_
 LayerDifference measure(const LayerPair& layer, const PixelRect& data_window);
 
 /// Why `comparison` fails, in words; empty when it passes. It fails if a layer has NaN. With a
-/// `max_rmse` it also fails if a layer has a larger RMSE, or an infinity where the other film has
-/// another value. Z, P, motion, samples, visits and Cryptomattes are exempt from `max_rmse`, unless
-/// there are no other layers.
+/// `max_rmse` it also fails if a layer has a larger RMSE, if one has an infinity where the other
+/// film has another value, or if A lacks a layer or channel that B has. Z, P, motion, samples,
+/// visits and Cryptomattes are exempt from `max_rmse`, unless there are no other layers.
 std::string failure(const Comparison& comparison, std::optional<double> max_rmse);
 
 }  // namespace dapple

@@ -9,9 +9,12 @@ namespace {
 
 using Layers = std::map<std::string, std::vector<const Plane*>>;
 
-Layers layers_of(const Film& film) {
+Layers layers_of(const Film& film, const std::string& only) {
   Layers layers;
-  for (const Plane& plane : film.planes) layers[layer_of(plane.channel)].push_back(&plane);
+  for (const Plane& plane : film.planes) {
+    const std::string layer = layer_of(plane.channel);
+    if (only.empty() || layer == only) layers[layer].push_back(&plane);
+  }
   return layers;
 }
 
@@ -40,9 +43,9 @@ bool has_all(const LayerPair& layer, const std::string& prefix, const char* lett
 
 }  // namespace
 
-LayerMatch match_layers(const Film& a, const Film& b) {
-  const Layers layers_a = layers_of(a);
-  const Layers layers_b = layers_of(b);
+LayerMatch match_layers(const Film& a, const Film& b, const std::string& only) {
+  const Layers layers_a = layers_of(a, only);
+  const Layers layers_b = layers_of(b, only);
   LayerMatch match;
   for (const auto& [name, planes] : layers_a) {
     const auto other = layers_b.find(name);

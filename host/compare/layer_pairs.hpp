@@ -26,8 +26,9 @@ struct LayerMatch {
   std::vector<std::string> only_a, only_b;
 };
 
-/// Matches the layers of two films, which must outlive the result.
-LayerMatch match_layers(const Film& a, const Film& b);
+/// Matches the layers of two films, which must outlive the result. With a name in `only` all other
+/// layers are left out.
+LayerMatch match_layers(const Film& a, const Film& b, const std::string& only = "");
 
 /// The name by which write_png() and layer_tone() find the picture of `layer`: the layer if it has
 /// RGB or XYZ, else its first channel.

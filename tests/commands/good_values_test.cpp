@@ -221,7 +221,7 @@ TEST_F(GoodValues, OfMergeMakeAPictureOfWhichCompareTellsTheDifferences) {
 }
 
 TEST_F(GoodValues, OfSceneAndInfoTellOfASceneAndOfDevicesOfDevices) {
-  run("scene cube divisions=2 -o a.glb");
+  run("scene cube divisions=2 -o a.glb -q");
   expect_all_options_given("scene");
   expect_files({"a.glb"});
   run("info a.glb --opacity cube=0.5 --lights lights.json --cache trees --json");

@@ -169,7 +169,7 @@ class CompareProgram : public FilmFile {
 };
 
 TEST_F(CompareProgram, ExitsWithFiveWhenALayerIsOverTheLimitAndStillWritesEverything) {
-  const Film b = film_of(64, 48, {{"Z", constant(3072, kInfinity)}, {"ao.R", noise(3072, 1)}});
+  Film b = film_of(64, 48, {{"Z", constant(3072, kInfinity)}, {"ao.R", noise(3072, 1)}});
   Film a = b;
   for (float& value : a.planes[1].pixels) value += 0.125f;
   write_exr(a, path("a.exr"));
@@ -186,6 +186,11 @@ TEST_F(CompareProgram, ExitsWithFiveWhenALayerIsOverTheLimitAndStillWritesEveryt
   EXPECT_TRUE(contains(bytes_of(path("p.html")), "layer ao has RMSE 0.125"));
   EXPECT_GT(bytes_of(path("h.png")).size(), 0U);
   EXPECT_EQ(run("a.exr b.exr --max-rmse 0.124 --layer Z"), 0) << err();
+  b.planes.pop_back();
+  write_exr(b, path("z.exr"));
+  EXPECT_EQ(run("z.exr a.exr --max-rmse 1"), 5);
+  EXPECT_EQ(run("z.exr a.exr --max-rmse 1 --layer Z"), 0) << err();
+  EXPECT_EQ(out().find("only in"), std::string::npos) << out();
 }
 
 TEST_F(CompareProgram, PrintsJsonAndWritesTheHeatMapAndThePage) {

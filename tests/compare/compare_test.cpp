@@ -169,6 +169,18 @@ TEST(CompareFailure, NamesLayerAndFigureAndExemptsDistancesAndCounts) {
   EXPECT_TRUE(contains(failure(only_z, 0.2), "layer Z has RMSE 8"));
 }
 
+TEST(CompareFailure, UnderALimitNamesWhatAOnlyLacks) {
+  const std::vector<Plane> planes = {
+      {"Z", {1}}, {"ao.R", {1}}, {"ao.back.R", {1}}, {"light.key.R", {1}}, {"motion.X", {1}}};
+  const Film all = film_of(1, 1, planes);
+  const Film ao = film_of(1, 1, {planes[1]});
+  EXPECT_EQ(failure(compared(ao, all), std::nullopt), "");
+  EXPECT_EQ(failure(compared(ao, all), 0.5),
+            "a.exr and b.exr differ: ao.back is only in b.exr; light.key is only in b.exr; "
+            "--max-rmse is 0.5");
+  EXPECT_EQ(failure(compared(all, ao), 0.5), "");
+}
+
 TEST(CompareFailure, NanAlwaysFailsAndInfinityFailsUnderALimit) {
   const auto one = [](const std::string& channel, float a, float b) {
     return compared(film_of(1, 1, {{channel, {a}}}), film_of(1, 1, {{channel, {b}}}));

@@ -145,7 +145,7 @@ std::vector<std::string> add_to_instances(gltf::Editor& editor, const gltf::Sour
                                           const BakeResult& result) {
   const std::string attribute = channel_of(a).attribute;
   const std::vector<gltf::NodeValues> nodes = baked_nodes(file, scene, result, attribute);
-  std::vector<std::string> notes{gltf::add_node_values(editor, nodes)};
+  std::vector<std::string> notes = gltf::add_node_values(editor, nodes);
   const auto has_attribute = [&](const gltf::NodeValues& values) {
     return file.has_gpu_instances(values.node);
   };

@@ -134,9 +134,7 @@ void warn(const std::string& file, std::uint64_t count, const char* what, Scene&
 /// The same with the first element that has it.
 void warn(const std::string& file, const Found& found, const char* what, Scene& scene) {
   if (found.count == 0) return;
-  const std::string more =
-      found.count > 1 ? fmt::format(" ({} of them)", grouped(found.count)) : "";
-  scene.warnings.push_back(one_line(fmt::format("{}: {} {}{}", file, found.first, what, more)));
+  scene.warnings.push_back(one_line(fmt::format("{}: {}", file, found.note(what))));
 }
 
 void warn_of_totals(const std::string& file, const MeshTotals& totals, std::uint64_t unbound,
@@ -160,6 +158,8 @@ void warn_of_totals(const std::string& file, const MeshTotals& totals, std::uint
   warn(file, totals.odd_texcoords, "has texture coordinates that are not finite: they count as 0,0",
        scene);
   warn(file, totals.odd_alphas, "has vertex alphas that are NaN: they count as 0", scene);
+  warn(file, totals.fixed_attributes,
+       "has morph targets of colours or texture coordinates, which are ignored", scene);
   warn(file, unbound, "skinned nodes have meshes without JOINTS_0 and WEIGHTS_0, which stay rigid",
        scene);
 }

@@ -48,6 +48,16 @@ AttributeNeeds needs_of(const Material& material, const AlphaLookup& lookup, boo
   return {!lines, !lines && textured, material.alpha_mode != AlphaMode::opaque, colors};
 }
 
+/// Whether morph targets change texture coordinates or colours that are read, which is ignored.
+bool morphs_fixed_attributes(const tinygltf::Primitive& primitive, const AttributeNeeds& needs,
+                             const AlphaLookup& lookup) {
+  const std::string texcoord = fmt::format("TEXCOORD_{}", lookup.texcoord);
+  return std::any_of(primitive.targets.begin(), primitive.targets.end(), [&](const auto& target) {
+    return (needs.uvs && target.contains(texcoord)) ||
+           ((needs.alphas || needs.colors) && target.contains("COLOR_0"));
+  });
+}
+
 void append_elements(Mesh& mesh, const std::vector<std::uint32_t>& corners, std::size_t base,
                      std::uint32_t material) {
   for (const std::uint32_t corner : corners) {
@@ -78,6 +88,7 @@ void append_primitive(const Document& document, const PrimitiveSource& source, M
   const AttributeNeeds needs = needs_of(material, lookup, lines, colors, totals);
   const Attributes attributes = read_attributes(document, primitive, needs, lookup, who);
   totals.without_texcoord.add(needs.uvs && !attributes.uvs ? 1 : 0, who);
+  totals.fixed_attributes.add(morphs_fixed_attributes(primitive, needs, lookup) ? 1 : 0, who);
   std::vector<std::uint32_t> corners = element_corners(document, primitive, who);
   totals.without_elements.add(corners.empty() ? 1 : 0, who);
   if (corners.empty()) return;

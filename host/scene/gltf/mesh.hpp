@@ -9,6 +9,7 @@
 
 #include "dapple/scene.hpp"
 #include "scene/gltf/document/document.hpp"
+#include "scene/gltf/document/found.hpp"
 #include "scene/gltf/material.hpp"
 #include "scene/gltf/pose/deformation.hpp"
 #include "scene/gltf/pose/mesh_use.hpp"
@@ -18,17 +19,6 @@ namespace dapple::gltf {
 struct MeshPart {
   std::uint32_t mesh = 0;  ///< index into Scene::meshes
   int emitter = -1;        ///< index into Scene::materials when the part emits, else -1
-};
-
-/// How often something was found, and where first.
-struct Found {
-  std::uint64_t count = 0;
-  std::string first;  ///< the element, for messages
-
-  void add(std::uint64_t more, const std::string& who) {
-    if (more > 0 && count == 0) first = who;
-    count += more;
-  }
 };
 
 /// Totals over all meshes, for limits and for one warning per feature.
@@ -46,6 +36,7 @@ struct MeshTotals {
   Found without_view;                  ///< primitives whose POSITION has neither values nor view
   Found without_texcoord;              ///< primitives that lack the TEXCOORD of their texture
   Found odd_texcoords, odd_alphas;     ///< vertices whose number is NaN, or infinite
+  Found fixed_attributes;              ///< primitives with morph targets of colours or TEXCOORD
 };
 
 /// Appends the parts of a glTF mesh to Scene::meshes, skinned by `joints` unless it is null. Parts

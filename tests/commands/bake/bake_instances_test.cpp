@@ -181,21 +181,23 @@ TEST_F(BakeCommand, InstancesThatAreNotFiniteGetNoNodes) {
 TEST_F(BakeCommand, ExtrasOfInstancesThatAreNotObjectsAreKept) {
   GltfBuilder builder = rich_triangle();
   builder.doc["nodes"][0]["extras"] = "tall";
-  for (const json& extras : {json{1, 2}, json(), json{{"kind", "fern"}}})
+  for (const json& extras : {json{1, 2}, json(), json{{"kind", "fern"}, {"ao", 0.5}}})
     builder.doc["nodes"].push_back({{"mesh", 0}, {"extras", extras}});
   write("in.glb", builder.glb());
   const Outcome run = dapple("bake in.glb -o out.glb --to instance");
   ASSERT_EQ(run.code, 0) << run.err;
   EXPECT_TRUE(contains(run.err,
-                       "note: node 0 (\"twig\"): its extras are not an object; they are kept as "
-                       "extras.value (2 of them)\n"))
+                       "note: node 0 (\"twig\") has extras that are not an object; they are kept "
+                       "as extras.value (2 of them)\n"))
       << run.err;
+  EXPECT_TRUE(contains(run.err, "note: node 3 had such values in its extras, which are replaced\n"));
   const json nodes = document("out.glb")["nodes"];
   for (const json& node : nodes) EXPECT_TRUE(node["extras"].contains("ao")) << node;
   EXPECT_EQ(nodes[0]["extras"]["value"], "tall");
   EXPECT_EQ(nodes[1]["extras"]["value"], (json{1, 2}));
   EXPECT_EQ(nodes[2]["extras"].size(), 1u);
   EXPECT_EQ(nodes[3]["extras"]["kind"], "fern");
+  EXPECT_NE(nodes[3]["extras"]["ao"], 0.5);
 }
 
 TEST_F(BakeCommand, InstancesGetExtrasOrAnInstanceAttribute) {

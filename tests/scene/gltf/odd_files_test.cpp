@@ -81,6 +81,20 @@ TEST(OddGltf, NumbersOfVerticesThatAreNotFiniteAreNoted) {
   EXPECT_EQ(scene.meshes[0].vertex_alpha, (std::vector<float>{0, 1, 0}));
 }
 
+TEST(OddGltf, MorphTargetsOfColoursAndCoordinatesAreNotedWhereThoseAreRead) {
+  const std::vector<float> uvs{0, 0, 1, 0, 0, 1}, white(12, 1.0f);
+  for (const char* attribute : {"COLOR_0", "TEXCOORD_0", "TEXCOORD_1"}) {
+    GltfBuilder builder = textured(uvs, white, png::with_alpha(1, 1, {200}));
+    json& primitive = builder.doc["meshes"][0]["primitives"][0];
+    const std::string base = attribute == std::string("COLOR_0") ? "COLOR_0" : "TEXCOORD_0";
+    primitive["targets"] = {{{attribute, primitive["attributes"][base]}}};
+    if (attribute == std::string("TEXCOORD_1"))
+      EXPECT_TRUE(builder.load().warnings.empty());
+    else
+      expect_note(builder.load(), "mesh 0 primitive 0 has morph targets of colours or texture");
+  }
+}
+
 /// A PNG of one row of indices with 4 bits each, and a palette of `colors`.
 Bytes palette_png(const Bytes& packed, std::uint8_t colors) {
   Bytes file = png::encode(static_cast<std::uint32_t>(2 * packed.size()), 1, 4, 3, packed);

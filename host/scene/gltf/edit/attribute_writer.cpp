@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "scene/gltf/document/extension_names.hpp"
+#include "scene/gltf/document/found.hpp"
 #include "scene/gltf/edit/extension_use.hpp"
 #include "scene/message.hpp"
 
@@ -84,9 +85,8 @@ void add_attributes(Editor& editor, const std::vector<NewAttribute>& attributes)
   if (removed) unlist_unused_extension(editor.json(), extension::kDraco);
 }
 
-std::string add_node_values(Editor& editor, const std::vector<NodeValues>& nodes) {
-  std::uint64_t kept = 0;
-  std::string first;
+std::vector<std::string> add_node_values(Editor& editor, const std::vector<NodeValues>& nodes) {
+  Found kept, replaced;
   for (const NodeValues& values : nodes) {
     Json& node = editor.json()["nodes"][values.node];
     if (has_extension(node, extension::kInstancing)) {
@@ -97,16 +97,16 @@ std::string add_node_values(Editor& editor, const std::vector<NodeValues>& nodes
       editor.json()["nodes"][values.node]["extensions"][extension::kInstancing]["attributes"]
                    [values.attribute] = accessor;
     } else {
-      if (keep_other_extras(node) && kept++ == 0)
-        first = element("node", values.node, node.value("name", ""));
+      const std::string who = element("node", values.node, node.value("name", ""));
+      kept.add(keep_other_extras(node) ? 1 : 0, who);
+      replaced.add(node["extras"].contains(values.extra) ? 1 : 0, who);
       Json& extra = node["extras"][values.extra];
       extra = values.values;
       if (values.components == 1) extra = values.values.at(0);
     }
   }
-  if (kept == 0) return {};
-  return fmt::format("{}: its extras are not an object; they are kept as extras.value{}", first,
-                     kept > 1 ? fmt::format(" ({} of them)", grouped(kept)) : "");
+  return {kept.note("has extras that are not an object; they are kept as extras.value"),
+          replaced.note("had such values in its extras, which are replaced")};
 }
 
 }  // namespace dapple::gltf

@@ -39,7 +39,7 @@ struct NodeValues {
 
 void add_attributes(Editor& editor, const std::vector<NewAttribute>& attributes);
 
-/// Returns a note if extras of nodes were not objects, else nothing.
-std::string add_node_values(Editor& editor, const std::vector<NodeValues>& nodes);
+/// Returns notes of extras that were not objects, and of values that were replaced.
+std::vector<std::string> add_node_values(Editor& editor, const std::vector<NodeValues>& nodes);
 
 }  // namespace dapple::gltf
