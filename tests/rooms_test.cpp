@@ -37,7 +37,7 @@ const std::vector<Library> kLibraries{
     {"tinygltf", std::regex("tiny_gltf\\.h"), {"host/scene/gltf/"}},
     {"OpenEXR",
      std::regex("(OpenEXR/)?Imf[A-Z].*"),
-     {"host/files/exr_reader.", "host/film/exr/exr_writer"}},
+     {"host/files/exr_", "host/film/exr/exr_writer"}},
     {"oneTBB",
      std::regex("tbb/.*"),
      {"host/files/", "host/scene/", "host/bvh/", "host/device/", "host/film/", "host/sampling/",

@@ -181,10 +181,10 @@ class NodeJudge {
     judged.stored.mass_concentration = bvh_mass_concentration(node.leaf_end, subtree.slot);
     judged.rectangles = composition.rectangles;
     for (int axis = 0; axis < 3; ++axis) {
-      judged.stored.opacity[axis] = 1.0f - std::exp(-depth_decode(node.depth[axis][subtree.slot]));
+      judged.stored.opacity[axis] = 1.0f - std::exp(-decode_depth(node.depth[axis][subtree.slot]));
       judged.stored.mass_pole[axis] =
           bvh_mass_pole(node.correlation, static_cast<uint>(axis), subtree.slot);
-      judged.stored.correlation[axis] = correlation_decode(node.correlation[axis][subtree.slot]);
+      judged.stored.correlation[axis] = decode_correlation(node.correlation[axis][subtree.slot]);
       judged.true_axes[axis] = static_cast<float>(
           sample_opacity(truth, judged.box, unit_axis(axis), kAxisRays * options_.rays, random_)
               .opacity);

@@ -63,7 +63,7 @@ void measure_once(const Scene& scene, PrefilterCostRow& row) {
   const auto [prefiltering, prefilter_peak] =
       cost_of([&] { prefilter(built, TextureIntegrals(scene, built.object.textured)); });
   const ObjectBvh& object = built.object;
-  row.triangles = object.triangles;
+  row.triangles = object.primitive_count;
   row.bvh_bytes = bytes(object.nodes) + bytes(object.blocks) + bytes(object.textured);
   row.build_seconds = std::min(row.build_seconds, building);
   row.prefilter_seconds = std::min(row.prefilter_seconds, prefiltering);

@@ -180,7 +180,7 @@ class MeshOccluders {
       add_preparation(*alone_, preparing.seconds(), records.statistics);
       measure_bias(*alone_,
                    {PilotMesh(scene_.meshes[mesh], two_sided_, options_,
-                              placements_of(scene_, mesh, BakeInstances::alone))},
+                              placements_of(scene_, mesh, BakePlacement::alone))},
                    options_, records.statistics);
     }
     compared_.emplace(options_);
@@ -219,7 +219,7 @@ bool for_each_mesh(const Scene& scene, const BakeOptions& options, BakeOne bake_
 
 /// Those that for_each_mesh() visits, in their surroundings.
 std::vector<PilotMesh> pilot_meshes(const Scene& scene, BakeOptions options) {
-  if (options.placement == BakeInstances::alone) options.placement = BakeInstances::together;
+  if (options.placement == BakePlacement::alone) options.placement = BakePlacement::together;
   const TwoSided two_sided(scene, options.sides);
   std::vector<PilotMesh> meshes;
   for_each_mesh(scene, options, [&](std::uint32_t m, const Placements& placements) {
@@ -311,13 +311,13 @@ void validate(const BakeOptions& options) {
   check_range("--target-error", double{options.target_error}, 0, 1);
   check_ray_options(options);
   check_enumerator("--sides", options.sides, BakeSides::mean);
-  check_enumerator("--instances", options.placement, BakeInstances::alone);
+  check_enumerator("--instances", options.placement, BakePlacement::alone);
   check_enumerator("--normals", options.normals, Normals::geometric);
   check_range("--max-bias", double{options.max_bias}, 0, 1);
-  if (options.light && options.placement == BakeInstances::alone)
+  if (options.light && options.placement == BakePlacement::alone)
     throw Error(ErrorKind::usage,
                 "--passes light needs --instances together or unique: a mesh alone is not lit");
-  if (options.ground && options.placement == BakeInstances::alone &&
+  if (options.ground && options.placement == BakePlacement::alone &&
       (options.vertices || options.texture))
     throw Error(ErrorKind::usage,
                 "--ground needs --instances together or unique: a mesh alone stands on none");
@@ -334,7 +334,7 @@ BakeResult bake(const Scene& scene, const BakeOptions& asked, const RenderContro
     throw Error(ErrorKind::usage,
                 fmt::format("--passes light: {}; --lights or --dome brings some",
                             asked.lights ? "there are no lights" : "the scene has no lights"));
-  const bool alone = asked.placement == BakeInstances::alone;
+  const bool alone = asked.placement == BakePlacement::alone;
   if (alone && (asked.vertices || asked.texture) && !occluders.empty())
     throw Error(ErrorKind::usage,
                 "--occluders needs --instances together or unique: a mesh alone has none");

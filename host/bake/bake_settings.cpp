@@ -22,8 +22,8 @@ std::string name_of(BakeSides sides) {
   return "";
 }
 
-std::string name_of(BakeInstances instances) {
-  return instances == BakeInstances::alone ? "alone" : "together or unique";
+std::string name_of(BakePlacement instances) {
+  return instances == BakePlacement::alone ? "alone" : "together or unique";
 }
 
 void add_vector(ChecksumStream& stream, const V3f& v) {

@@ -6,9 +6,9 @@
 
 namespace dapple {
 
-Placements placements_of(const Scene& scene, std::uint32_t mesh, BakeInstances kind) {
+Placements placements_of(const Scene& scene, std::uint32_t mesh, BakePlacement kind) {
   Placements placements;
-  if (kind == BakeInstances::alone) {
+  if (kind == BakePlacement::alone) {
     placements.add(M44f());
     return placements;
   }
@@ -18,8 +18,8 @@ Placements placements_of(const Scene& scene, std::uint32_t mesh, BakeInstances k
   return placements;
 }
 
-std::vector<std::size_t> placement_counts(const Scene& scene, BakeInstances kind) {
-  const bool alone = kind == BakeInstances::alone;
+std::vector<std::size_t> placement_counts(const Scene& scene, BakePlacement kind) {
+  const bool alone = kind == BakePlacement::alone;
   std::vector<std::size_t> counts(scene.meshes.size(), alone ? 1 : 0);
   for (const Instance& instance : scene.instances)
     if (!alone && is_invertible(instance.to_world)) ++counts[instance.mesh];
@@ -27,7 +27,7 @@ std::vector<std::size_t> placement_counts(const Scene& scene, BakeInstances kind
 }
 
 std::size_t count_vanished_meshes(const Scene& scene) {
-  const std::vector<std::size_t> counts = placement_counts(scene, BakeInstances::together);
+  const std::vector<std::size_t> counts = placement_counts(scene, BakePlacement::together);
   std::vector<bool> vanished(scene.meshes.size());
   for (const Instance& instance : scene.instances)
     vanished[instance.mesh] =

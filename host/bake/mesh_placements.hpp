@@ -9,10 +9,10 @@ namespace dapple {
 
 /// Those of the instances of a mesh whose matrices can be inverted: what is scaled to zero is not
 /// in the scene. Of a mesh alone: the identity.
-Placements placements_of(const Scene& scene, std::uint32_t mesh, BakeInstances kind);
+Placements placements_of(const Scene& scene, std::uint32_t mesh, BakePlacement kind);
 
 /// The number of placements_of() each mesh.
-std::vector<std::size_t> placement_counts(const Scene& scene, BakeInstances kind);
+std::vector<std::size_t> placement_counts(const Scene& scene, BakePlacement kind);
 
 /// The number of meshes of triangles that have instances, but none that can be inverted.
 std::size_t count_vanished_meshes(const Scene& scene);

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "bvh/opacity/connected_vertices.hpp"
+#include "bvh/opacity/disjoint_sets.hpp"
 #include "bvh/opacity/welded_vertices.hpp"
 
 namespace dapple {
@@ -49,7 +49,7 @@ void leave_small_sheets(const Mesh& mesh, float longest, std::vector<bool>& two_
   const auto vertex = [&](std::size_t t, int k) {
     return welded[mesh.indices[3 * t + static_cast<std::size_t>(k)]];
   };
-  ConnectedVertices sheets = connect_triangles(
+  DisjointSets sheets = connect_triangles(
       welded.size(), two_sided.size(), [&](std::size_t t) { return two_sided[t]; }, vertex);
   std::vector<Box3f> boxes(welded.size());
   for (std::uint32_t v = 0; v < welded.size(); ++v)

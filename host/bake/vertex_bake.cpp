@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "bake/hidden_vertices.hpp"
+#include "bake/enclosed_vertices.hpp"
 #include "sampling/random_choice.hpp"
 
 namespace dapple {
@@ -70,17 +70,17 @@ struct GroupValues {
     }
   }
 
-  /// Gives a hidden group the mean of others.
-  void fill(const HiddenGroup& hidden) {
-    const auto count = static_cast<float>(hidden.sources.size());
+  /// Gives an enclosed group the mean of others.
+  void fill(const EnclosedGroup& enclosed) {
+    const auto count = static_cast<float>(enclosed.sources.size());
     const auto sum = [&](const auto& values, auto start) {
-      for (const std::uint32_t source : hidden.sources) start += values[source];
+      for (const std::uint32_t source : enclosed.sources) start += values[source];
       return start;
     };
-    ao[hidden.group] = sum(ao, 0.0f) / count;
-    if (!bent.empty()) bent[hidden.group] = sum(bent, V3f(0, 0, 0)).normalized();
+    ao[enclosed.group] = sum(ao, 0.0f) / count;
+    if (!bent.empty()) bent[enclosed.group] = sum(bent, V3f(0, 0, 0)).normalized();
     for (std::vector<V3f>& of_light : light)
-      of_light[hidden.group] = sum(of_light, V3f(0, 0, 0)) / count;
+      of_light[enclosed.group] = sum(of_light, V3f(0, 0, 0)) / count;
   }
 
   [[nodiscard]] BakedMesh at_vertices(const VertexGroups& groups) const {
@@ -176,12 +176,12 @@ std::optional<BakedMesh> bake_mesh(const Mesh& mesh, const std::vector<bool>& tw
     for (std::size_t l = 0; l < tracing.lights; ++l) values.light.push_back(light.light_values(l));
     for (std::uint32_t i = 0; i < known.size(); ++i) known[i] = known[i] && !light.is_inside(i);
   }
-  for (const HiddenGroup& hidden : hidden_groups(mesh, groups, known)) {
-    values.fill(hidden);
-    filled[hidden.group] = true;
+  for (const EnclosedGroup& enclosed : enclosed_groups(mesh, groups, known)) {
+    values.fill(enclosed);
+    filled[enclosed.group] = true;
   }
   for (const std::uint32_t group : groups.of_vertex) {
-    if (filled[group]) ++statistics.hidden_vertices;
+    if (filled[group]) ++statistics.enclosed_vertices;
     if (of_group[group].dark) ++statistics.dark_vertices;
   }
   statistics.vertices += mesh.positions.size();

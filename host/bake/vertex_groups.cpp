@@ -10,7 +10,7 @@
 #include <compare>
 #include <numeric>
 
-#include "bvh/opacity/connected_vertices.hpp"
+#include "bvh/opacity/disjoint_sets.hpp"
 
 namespace dapple {
 namespace {
@@ -126,7 +126,7 @@ VertexGroups one_group(std::size_t vertices) {
 }
 
 std::vector<std::uint32_t> connected_parts(const Mesh& mesh, const VertexGroups& groups) {
-  ConnectedVertices joined = connect_triangles(
+  DisjointSets joined = connect_triangles(
       groups.count, mesh.primitive_count(), [](std::size_t) { return true; },
       [&](std::size_t t, int k) {
         return groups.of_vertex[mesh.indices[3 * t + static_cast<std::size_t>(k)]];

@@ -76,7 +76,8 @@ void add_quantity_options(CLI::App& app, Arguments& a) {
                  "rings; 5 gives the rings of the LAI-2200 plant canopy analyser")
       ->check(of_values("0..90"));
   app.add_option("--suns", a.suns,
-                 "CSV of suns: azimuth,elevation,irradiance (degrees from -Z to +X, W/m^2), or "
+                 "CSV of suns: azimuth,elevation,irradiance (degrees from north, -Z, to east, +X; "
+                 "degrees above the horizon; W/m^2 on a plane that faces the sun), or "
                  "x,y,z,irradiance with the direction towards the sun");
   app.add_flag("--per-sun", o.per_sun, "Write a column for each sun instead of their sum");
   app.add_option(
@@ -87,7 +88,7 @@ void add_quantity_options(CLI::App& app, Arguments& a) {
                  "image keeps "
                  "its own")
       ->capture_default_str();
-  add_rotation_option(app, "--sky-rotation", a.sky_rotation);
+  add_rotation_option(app, "--sky-rotation", "image of --sky", a.sky_rotation);
   app.add_option("--lights", a.lights, "JSON file of lights, in place of the scene's");
   add_light_radius_option(app, a.scene_options.light_radius);
 }

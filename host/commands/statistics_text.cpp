@@ -65,7 +65,8 @@ std::string seconds_line(const RenderStatistics& s) {
   };
   return fmt::format(
       "  seconds: load {:.2f}, prepare {:.2f}, cache {:.2f}, build {:.2f}, prefilter {:.2f}, {}"
-      "upload {:.2f}, kernels {:.2f}, trace {:.2f}, {}develop {:.2f}, write {:.2f}, total {:.2f}\n",
+      "upload {:.2f}, kernel build {:.2f}, trace {:.2f}, {}develop {:.2f}, write {:.2f}, total "
+      "{:.2f}\n",
       t.load, t.prepare, t.cache, t.build, t.prefilter, if_any("refit", t.refit), t.upload,
       t.kernel_build, t.trace, if_any("checkpoint", t.checkpoint), t.develop, t.write, t.total);
 }
@@ -85,7 +86,9 @@ std::string largest_irradiance_line(const RenderStatistics& s) {
   std::string layers;
   for (const auto& [layer, value] : s.largest_irradiance)
     layers += fmt::format("{}{} {:.3g}", layers.empty() ? "" : ", ", layer, value);
-  return layers.empty() ? "" : fmt::format("  these are relative to, in W/m^2: {}\n", layers);
+  return layers.empty()
+             ? ""
+             : fmt::format("  errors and biases of lights are relative to, in W/m^2: {}\n", layers);
 }
 
 }  // namespace

@@ -178,7 +178,9 @@ void validate(const RenderOptions& options) {
         ErrorKind::usage,
         fmt::format("--back-every is {}; it must be 1, 2, 4, 8, 16, 32 or 64", options.back_every));
   check_range("--footprint", options.footprint, 0, 1e6);
-  check_range("--roulette", options.roulette, 0, std::nextafter(1.0f, 0.0f));
+  if (!(options.roulette >= 0 && options.roulette < 1))
+    throw Error(ErrorKind::usage, fmt::format("--roulette is {}; it must be at least 0 and below 1",
+                                              options.roulette));
   check_range("--report-bias", options.report_bias, 0, 1);
   check_range("--max-bias", options.max_bias.value_or(0), 0, 1);
   check_range("--ao-distance", options.ao_distance, 0, 1e30f);

@@ -14,6 +14,13 @@ bool is_zero(const Film& film, const std::string& channel) {
                                           [](float value) { return value > 0; });
 }
 
+/// Whether there is such a layer, and it is not black.
+bool shines(const Film& film, const std::string& layer) {
+  return film.find(layer + ".R") != nullptr &&
+         (!is_zero(film, layer + ".R") || !is_zero(film, layer + ".G") ||
+          !is_zero(film, layer + ".B"));
+}
+
 }  // namespace
 
 // The commonest mistake is a sun whose direction is that to the sun.
@@ -25,8 +32,7 @@ std::vector<std::string> notes_of_unseen_lights(const Film& film,
     const std::string name = "light." + layer.name;
     const auto is_dark_at = [&](std::size_t l) { return is_dark(lights[l]); };
     if (std::all_of(layer.lights.begin(), layer.lights.end(), is_dark_at) ||
-        film.find(name + ".R") == nullptr || !is_zero(film, name + ".R") ||
-        !is_zero(film, name + ".G") || !is_zero(film, name + ".B"))
+        film.find(name + ".R") == nullptr || shines(film, name) || shines(film, name + ".back"))
       continue;
     const Light& first = lights[layer.lights[0]];
     const bool rises = first.kind == LightKind::sun && first.direction.y > 0;

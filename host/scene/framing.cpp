@@ -97,9 +97,9 @@ Camera look_at(V3f from, V3f at, V3f up, float fov_y) {
   if (!is_finite(from) || !is_finite(at) || !is_finite(up)) {
     throw Error(ErrorKind::usage, "camera: from, at and up must be finite");
   }
-  const V3f back = (from - at).normalized();
+  const V3f back((Imath::V3d(from) - Imath::V3d(at)).normalized());
   if (back.length2() == 0) throw Error(ErrorKind::usage, "camera: from and at are the same point");
-  const V3f across = up.normalized().cross(back);
+  const V3f across = V3f(Imath::V3d(up).normalized()).cross(back);
   if (across.length() < 1e-5f) {
     throw Error(ErrorKind::usage, "camera: up is zero or points along the view; choose another");
   }

@@ -157,7 +157,7 @@ V3f color_of(V3f color) {
 
 /// Whether two points differ only by the rounding of their coordinates.
 bool coincide(V3f a, V3f b) {
-  constexpr float kRounding = 16 * std::numeric_limits<float>::epsilon();
+  constexpr float kRounding = std::numeric_limits<float>::epsilon();  // one or two steps
   const auto largest = [](V3f p) {
     return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
   };

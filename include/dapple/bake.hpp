@@ -26,7 +26,7 @@ enum class BakeSides : std::uint8_t {
 };
 
 /// Which placements of a mesh the values at its vertices describe.
-enum class BakeInstances : std::uint8_t {
+enum class BakePlacement : std::uint8_t {
   together,  ///< the mean over all placements, each in its surroundings
   /// The mesh without the rest of the scene and without occluders, as it is in object space:
   /// `distance` is in the mesh's own units there; vertices and texels have no ground.
@@ -56,14 +56,14 @@ struct BakeOptions {
   /// The footprint is the largest of `footprint`, a half of it, a quarter and so on with which the
   /// bias is at most this, [0,1]; exact rays if none is; 0: `footprint`.
   float max_bias = 0;
-  /// Metres, or with BakeInstances::alone the mesh's own units; surfaces farther away do not
+  /// Metres, or with BakePlacement::alone the mesh's own units; surfaces farther away do not
   /// occlude; [0, 1e30], 0: no limit.
   float distance = 0;
   float falloff = 0;  ///< as RenderOptions::ao_falloff
   Normals normals = Normals::shading;
   bool at_vertices = false;  ///< rays start at the vertices, not from points of the triangles
   BakeSides sides = BakeSides::automatic;
-  BakeInstances placement = BakeInstances::together;
+  BakePlacement placement = BakePlacement::together;
   std::uint32_t texture_size = 1024;  ///< texels along each side, [1, 16384]
   int margin = 16;  ///< texels by which values extend over the border of charts, [0, 1024]
   /// Texture coordinates to use, for each mesh and vertex, in [0,1] up to rounding errors of 1e-5;
@@ -139,9 +139,9 @@ struct BakeStatistics {
   /// BakeOptions::footprint, or what max_bias chose. With meshes alone that of the instances, if
   /// they are baked, else of the last mesh.
   float footprint = 0;
-  std::size_t inside_samples = 0;   ///< inside closed geometry; they count for no value
-  std::size_t hidden_vertices = 0;  ///< inside closed geometry; they get their neighbours' value
-  std::size_t hidden_texels = 0;    ///< the same in the texture
+  std::size_t inside_samples = 0;     ///< inside closed geometry; they count for no value
+  std::size_t enclosed_vertices = 0;  ///< inside closed geometry; they get their neighbours' value
+  std::size_t enclosed_texels = 0;    ///< the same in the texture
   /// See nothing, as in a closed room: AO below 0.001. Those inside closed geometry are no part.
   std::size_t dark_vertices = 0;
   std::size_t dark_texels = 0;  ///< the same in the texture
@@ -168,7 +168,7 @@ struct BakeResult {
 /// opaque geometry, such as those of a floor below a box, do not count. Vertices at the same
 /// position with normals of triangles within 45 degrees share one value. A bake that is
 /// resumed from a checkpoint of `control` must have the same arguments as the first one. Throws
-/// Error usage, input, device or failed; usage also for `occluders` with BakeInstances::alone,
+/// Error usage, input, device or failed; usage also for `occluders` with BakePlacement::alone,
 /// unless only instances are baked. The same arguments give the same bits, but for seconds and the
 /// reported bias: how many samples are compared depends on the time that comparing takes.
 BakeResult bake(const Scene& scene, const BakeOptions& options = {},
@@ -177,8 +177,9 @@ BakeResult bake(const Scene& scene, const BakeOptions& options = {},
 /// The share of the covered texels of a `size` x `size` texture that lie in several triangles at
 /// their centre, or in small triangles whose areas add up to more than the texel, [0,1], for
 /// texture coordinates as BakeOptions::texture_uvs; infinity if some are more than 1e-5 outside of
-/// [0,1]. Of the meshes that a bake with `placement` bakes.
+/// [0,1]. Of the meshes that a bake with `placement` bakes. Where many triangles are large it is
+/// that of a coarser texture, so that it takes less than a second or two.
 double uv_overlap(const Scene& scene, const std::vector<std::vector<V2f>>& uvs, std::uint32_t size,
-                  BakeInstances placement = BakeInstances::together);
+                  BakePlacement placement = BakePlacement::together);
 
 }  // namespace dapple

@@ -23,7 +23,7 @@ struct Plane {
 struct FilmMetadata {
   M44f world_to_camera;  ///< EXR's convention: left-handed camera, +Z forward; row vectors
   M44f world_to_ndc;     ///< to x, y in [0,1] over the display window, y down, after division by w
-  int samples = 0;
+  int samples = 0;       ///< RenderOptions::spp; with a target the least number
   std::uint32_t seed = 0;
   std::string scene, device, version;
   std::vector<std::pair<std::string, std::string>> settings;  ///< option name, value

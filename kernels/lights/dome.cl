@@ -56,10 +56,10 @@ __kernel void resolve_dome(__global const PixelWork* work, __global const Sample
       const uint lane = (ray - first) % 16u;
       if (lane == 0u) find_texels(&dome, rays, ray, last, &texels);
       const float weight = rays[ray].weight;
-      const float3 light = fmin(weight * texel_colour(&dome, texels.u[lane]) * params.scale, DAPPLE_MOST_VALUE);
+      const float3 unoccluded = fmin(weight * texel_colour(&dome, texels.u[lane]) * params.scale, DAPPLE_MOST_VALUE);
       const Occlusion found = occlusions[ray];
-      const float3 seen = light * found.transmittance, of_ray = seen * albedo;
-      sums += dome_sums(seen, light, found);
+      const float3 seen = unoccluded * found.transmittance, of_ray = seen * albedo;
+      sums += dome_sums(seen, unoccluded, found);
       if (params.albedo)
         reflected += fixed_points((float8)(of_ray.x, of_ray.y, of_ray.z, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f));
       if (weight * params.scale > DAPPLE_SMALL_VALUE) {

@@ -34,8 +34,8 @@ constexpr Names<BakeSides, 4> kSides{{{"auto", BakeSides::automatic},
                                       {"front", BakeSides::front},
                                       {"max", BakeSides::max},
                                       {"mean", BakeSides::mean}}};
-constexpr Names<BakeInstances, 2> kPlacements{
-    {{"together", BakeInstances::together}, {"alone", BakeInstances::alone}}};
+constexpr Names<BakePlacement, 2> kPlacements{
+    {{"together", BakePlacement::together}, {"alone", BakePlacement::alone}}};
 
 /// Adds a property that is the name of the enumeration's value.
 template <class Options, class Value, std::size_t N>

@@ -25,6 +25,8 @@ namespace {
 
 using Vector = std::array<float, 3>;
 
+constexpr float kLargestRadiance = 1e30f;  // W/(sr m^2): that of dapple's lights
+
 V3f to_vector(const Vector& v) { return {v[0], v[1], v[2]}; }
 Vector from_vector(const V3f& v) { return {v.x, v.y, v.z}; }
 
@@ -99,8 +101,9 @@ const Mesh& mesh_of(const Scene& scene, std::size_t index) {
 
 void add_sun(Scene& scene, const Vector& towards, float irradiance, float degrees,
              const std::string& name) {
-  const V3f direction = to_vector(towards);
-  if (!(direction.length() > 0) || !std::isfinite(direction.length()))
+  const V3f given = to_vector(towards);
+  const Imath::V3d direction = Imath::V3d(given).normalized();  // a float's square may overflow
+  if (!std::isfinite(direction.length()) || !(direction.length() > 0))
     throw Error(ErrorKind::usage, "direction has no length");
   if (!(degrees > 0) || !(degrees < 180))
     throw Error(ErrorKind::usage, "angular_diameter must be above 0 and below 180 degrees");
@@ -109,10 +112,12 @@ void add_sun(Scene& scene, const Vector& towards, float irradiance, float degree
   Light light;
   light.name = name;
   light.kind = LightKind::sun;
-  light.direction = -direction.normalized();
+  light.direction = -V3f(direction);
   light.angular_radius = degrees * 0.5f * 3.14159265f / 180;
   const float sine = std::sin(light.angular_radius);
   light.radiance = V3f(irradiance / (3.14159265f * sine * sine));
+  if (!(light.radiance.x <= kLargestRadiance))
+    throw Error(ErrorKind::usage, "irradiance is too large for so small an angular_diameter");
   scene.lights.push_back(light);
 }
 
@@ -125,6 +130,8 @@ void add_sky(Scene& scene, const std::string& kind, float irradiance, double rot
     sky = dome_light("sky", kind);
   }
   sky.radiance *= irradiance;
+  if (!(irradiance >= 0 && sky.radiance.x <= kLargestRadiance))
+    throw Error(ErrorKind::usage, "irradiance is too large: radiances may be up to 1e30");
   sky.rotation = static_cast<float>(std::remainder(rotation, 360.0) * 3.141592653589793 / 180);
   scene.lights.push_back(sky);
 }

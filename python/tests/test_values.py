@@ -33,7 +33,7 @@ def test_opacity_may_differ_from_triangle_to_triangle() -> None:
 
 
 def test_irradiance_of_a_sun_is_its_cosine(plate: dapple.Scene) -> None:
-    plate.add_sun([0, 3, 4], irradiance=10)
+    plate.add_sun([0, 3e20, 4e20], irradiance=10)
     found = plate.irradiance([[0, 0, 0], [9, 0, 9]], [0, 1, 0], rays=256)["sun"]
     np.testing.assert_allclose(found.unoccluded, 6, rtol=1e-3)
     np.testing.assert_allclose(found.irradiance[1], 6, rtol=1e-3)

@@ -54,6 +54,8 @@ WRONG: dict[str, Call] = {
     "direction is not finite": lambda s: s.add_sun([0, NAN, 0]),
     "direction has no length": lambda s: s.add_sun([0, 0, 0]),
     "irradiance must be 0 or more": lambda s: s.add_sun(UP, irradiance=NAN),
+    "irradiance is too large for so": lambda s: s.add_sun(UP, angular_diameter=1e-20),
+    "irradiance is too large: radi": lambda s: s.add_sky(irradiance=1e38),
     "angular_diameter must be above 0": lambda s: s.add_sun(UP, angular_diameter=-3),
     "name is 3": lambda s: s.add_sun(UP, name=3),  # type: ignore[arg-type]
     "kind is 3": lambda s: s.add_sky(3),  # type: ignore[arg-type]

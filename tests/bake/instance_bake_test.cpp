@@ -95,7 +95,7 @@ double mean_of_brighter_sides(const Scene& scene, const Instance& instance, int 
   return sum / count;
 }
 
-TEST(BakeInstances, ValuesAreMeansOverTheSurface) {
+TEST(InstanceBake, ValuesAreMeansOverTheSurface) {
   const Scene scene = grove();
   const BakeResult result = bake(scene, of_instances(0.01f));
   for (const std::size_t i : {std::size_t{0}, scene.instances.size() / 2})
@@ -105,7 +105,7 @@ TEST(BakeInstances, ValuesAreMeansOverTheSurface) {
 
 // A plate of 2 m by 2 m through the middle of a cube, which hides a quarter of it, and a smaller
 // one inside of the cube. Its other samples see at least half of the sky.
-TEST(BakeInstances, SamplesInsideClosedGeometryDoNotCount) {
+TEST(InstanceBake, SamplesInsideClosedGeometryDoNotCount) {
   Scene scene = make_procedural("scene:cube?divisions=4");
   scene.lights.clear();
   const Box3f cube = scene_bounds(scene);
@@ -131,7 +131,7 @@ TEST(BakeInstances, SamplesInsideClosedGeometryDoNotCount) {
   EXPECT_EQ(result.instance_ao.at(plates + 1), 0.0f);
 }
 
-TEST(BakeInstances, ErrorsAreWithinTheTargetAndReported) {
+TEST(InstanceBake, ErrorsAreWithinTheTargetAndReported) {
   const Scene scene = grove();
   const BakeResult truth = bake(scene, of_instances(0));
   std::uint64_t rays = 0;
@@ -151,11 +151,11 @@ TEST(BakeInstances, ErrorsAreWithinTheTargetAndReported) {
 }
 
 // The meshes, too, choose a footprint, each by its own bias.
-TEST(BakeInstances, OfMeshesAloneHaveTheFootprintOfTheirSurroundings) {
+TEST(InstanceBake, OfMeshesAloneHaveTheFootprintOfTheirSurroundings) {
   const Scene scene = grove();
   BakeOptions options = of_instances(0);
   options.estimator = Estimator::prefiltered;
-  options.placement = BakeInstances::alone;
+  options.placement = BakePlacement::alone;
   options.footprint = 16;
   options.rays = 512;
   options.max_bias = 0.003f;
@@ -167,7 +167,7 @@ TEST(BakeInstances, OfMeshesAloneHaveTheFootprintOfTheirSurroundings) {
   EXPECT_EQ(both.instance_ao, instances.instance_ao);
 }
 
-TEST(BakeInstances, TheBrighterSideIsNotBrightenedByNoise) {
+TEST(InstanceBake, TheBrighterSideIsNotBrightenedByNoise) {
   Scene scene = make_procedural("scene:cloud?leaves=3000&opacity=0.5");
   scene.lights.clear();
   BakeOptions options = of_instances(0);
@@ -181,7 +181,7 @@ TEST(BakeInstances, TheBrighterSideIsNotBrightenedByNoise) {
   EXPECT_NEAR(brighter, mean_of_brighter_sides(scene, scene.instances[0], 4000), 0.01);
 }
 
-TEST(BakeInstances, RaysAreTheirNumberWithoutATarget) {
+TEST(InstanceBake, RaysAreTheirNumberWithoutATarget) {
   const Scene scene = grove();
   BakeOptions options = of_instances(0);
   options.rays = 80;

@@ -141,7 +141,7 @@ TEST(BakeLight, VerticesInsideClosedGeometryHaveTheirNeighboursIrradiance) {
   Mesh mesh;
   append_grid(mesh, centre, {20, 0, 0}, {0, 0, -0.01f}, 40, 0);
   const BakeResult result = bake(scene_of(mesh), lit_by({noon()}), {}, {cube});
-  EXPECT_GT(result.statistics.hidden_vertices, 0u);
+  EXPECT_GT(result.statistics.enclosed_vertices, 0u);
   for (std::size_t v = 0; v < mesh.positions.size(); ++v)
     EXPECT_GT(double{result.meshes.at(0).light.at(0)[v].x}, 0.1 * kOpen) << mesh.positions[v];
 }
@@ -288,7 +288,7 @@ TEST(BakeLight, ASceneWithoutLightsIsAnErrorAsOnTheCommandLine) {
 
 TEST(BakeLight, AMeshAloneIsNotLit) {
   BakeOptions options = lit_by({noon()});
-  options.placement = BakeInstances::alone;
+  options.placement = BakePlacement::alone;
   EXPECT_THROW(validate(options), Error);
 }
 

@@ -40,7 +40,7 @@ TEST(BakeTexture, TexelsInsideClosedGeometryHaveTheNearestValueWhateverTheMargin
   BakeOptions options = into_texture(64);
   options.margin = 0;
   const BakeResult result = bake(scene_of(floor), options, {}, {cube});
-  EXPECT_GT(result.statistics.hidden_texels, 200u) << "a ninth of the texels";
+  EXPECT_GT(result.statistics.enclosed_texels, 200u) << "a ninth of the texels";
   const std::vector<V2f>& corners = result.texture.layout.corners.at(0);
   V2f low(1), high(0);
   for (const V2f& corner : corners) {
@@ -68,7 +68,7 @@ TEST(BakeTexture, AClosedRoomIsDarkThoughPrefilteredRaysSeeALittle) {
   options.sides = BakeSides::front;
   const BakeResult result = bake(room, options);
   EXPECT_GT(result.statistics.dark_texels, 0u);
-  EXPECT_EQ(result.statistics.hidden_texels, 0u);
+  EXPECT_EQ(result.statistics.enclosed_texels, 0u);
 }
 
 TEST(BakeTexture, MoreTexelsThanTheMachineHasMemoryForAreRefusedInBytes) {

@@ -2,6 +2,7 @@
 // texture, and what a bake reports of given and of its own coordinates.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 
 #include "bake/texture/texture_layout.hpp"
@@ -29,7 +30,7 @@ struct Squares {
   std::vector<std::vector<V2f>> uvs;
 
   [[nodiscard]] UvOverlap overlap() const {
-    return find_overlap(scene, uvs, kSize, BakeInstances::together);
+    return find_overlap(scene, uvs, kSize, BakePlacement::together);
   }
 };
 
@@ -102,7 +103,7 @@ TEST(UvOverlap, ACoordinateOneRoundingOutsideOfTheTextureIsItsBorder) {
     ASSERT_LT(outer.uvs[0][0].x, 0);
     ASSERT_GT(outer.uvs[0][3].y, 1);
     EXPECT_EQ(uv_overlap(outer.scene, outer.uvs, kSize), 0);
-    EXPECT_EQ(share_without_texels(outer.scene, outer.uvs, kSize, BakeInstances::together), 0);
+    EXPECT_EQ(share_without_texels(outer.scene, outer.uvs, kSize, BakePlacement::together), 0);
     rounded.texture_uvs = outer.uvs;
     EXPECT_EQ(given_layout(outer.scene, rounded).corners, exact.corners);
   }
@@ -113,6 +114,15 @@ TEST(UvOverlap, ACoordinateOneRoundingOutsideOfTheTextureIsItsBorder) {
     rounded.texture_uvs = squares.uvs;
     EXPECT_THROW(given_layout(squares.scene, rounded), Error);
   }
+}
+
+TEST(TextureOverlap, OfManyLargeTrianglesIsFoundInACoarserTexture) {
+  const Squares cards = squares_at({std::vector<Rect>(2000, kLeft), {{0.5f, 0, 0.25f, 1}}});
+  const auto start = std::chrono::steady_clock::now();
+  const UvOverlap overlap = find_overlap(cards.scene, cards.uvs, 4096, BakePlacement::together);
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  expect_overlap(overlap, 2.0 / 3, 2.0 / 3, 0);
+  EXPECT_LT(seconds.count(), 10) << "4,000 triangles of 8 million texels each take a minute";
 }
 
 /// What a bake of few rays reports of its texture.

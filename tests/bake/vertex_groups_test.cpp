@@ -1,5 +1,4 @@
-// Groups of vertices that share a baked value (smooth seams, hard edges, two-sided sheets), and the
-// positions and weights of samples on triangles.
+// Groups of vertices that share a baked value: smooth seams, hard edges, two-sided sheets.
 #include "bake/vertex_groups.hpp"
 
 #include <gtest/gtest.h>
@@ -8,11 +7,8 @@
 #include <cmath>
 #include <ctime>
 #include <limits>
-#include <set>
 
-#include "bake/placement_choice.hpp"
 #include "bake/samples/surface_samples.hpp"
-#include "sampling/random_choice.hpp"
 
 namespace dapple {
 namespace {
@@ -96,98 +92,6 @@ double grouping_seconds(std::size_t count) {
 TEST(VertexGroups, ManyVerticesAtOnePointTakeLinearTime) {
   const double few = grouping_seconds(10'000), many = grouping_seconds(100'000);
   EXPECT_LT(many / few, 30) << many << " s and " << few << " s";
-}
-
-TEST(SurfaceSamples, TheFirstPowersOfFourLieInDifferentPartsOfATriangle) {
-  for (const std::uint32_t shift : {0u, 0x1234u, 0xffffu}) {
-    for (const std::uint32_t count : {4u, 16u, 64u}) {
-      const auto across = static_cast<float>(std::lround(std::sqrt(count)));
-      std::set<std::array<int, 3>> parts;
-      for (std::uint32_t i = 0; i < count; ++i) {
-        const std::array<float, 3> at = triangle_point(i ^ shift);
-        EXPECT_NEAR(at[0] + at[1] + at[2], 1.0f, 1e-5f);
-        std::array<int, 3> part{};
-        for (std::size_t k = 0; k < 3; ++k) {
-          EXPECT_GT(at[k], 0.0f);
-          part[k] = static_cast<int>(at[k] * across);
-        }
-        parts.insert(part);
-      }
-      EXPECT_EQ(parts.size(), count) << shift;
-    }
-  }
-}
-
-TEST(SurfaceSamples, WeightsOfASampleAddUpToTwiceTheArea) {
-  const Mesh mesh = triangles({{0, 0, 0}, {2, 0, 0}, {0, 3, 0}});
-  const VertexGroups groups = group_vertices(mesh);
-  const std::vector<bool> two_sided{true};
-  const SurfaceSample sample = sample_triangle({mesh, groups, two_sided}, 0, 5);
-  EXPECT_NEAR(sample.weight[0] + sample.weight[1] + sample.weight[2], 6.0f, 1e-5f);
-  EXPECT_TRUE(sample.front && sample.back);
-}
-
-TEST(SurfaceSamples, DegenerateTrianglesHaveNoArea) {
-  const Mesh mesh = triangles({{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {0, 0, 0}, {NAN, 0, 0}, {0, 1, 0}});
-  EXPECT_FALSE(has_area(mesh, 0));
-  EXPECT_FALSE(has_area(mesh, 1));
-}
-
-TEST(SurfaceSamples, RaysAreDividedOverSixtyFourSamplesAtMost) {
-  for (const auto& [rays, samples] :
-       {std::pair{8, 1}, {15, 1}, {16, 2}, {512, 64}, {1024, 64}, {65536, 64}}) {
-    const SampleCounts counts = sample_counts(rays, 1);
-    EXPECT_EQ(counts.samples, samples) << rays;
-    EXPECT_EQ(counts.rays, rays / samples) << rays;
-  }
-}
-
-TEST(SurfaceSamples, PlacementsHaveEquallyManySamplesIfThereAreEnough) {
-  struct Case {
-    int rays;
-    std::size_t placements;
-    bool at_vertex;
-    int samples;
-  };
-  for (const Case& c : {Case{64, 100, false, 8},
-                        {512, 5, false, 60},
-                        {65536, 5, false, 80},
-                        {65536, 100, false, 1600},
-                        {1024, 1000, false, 128},
-                        {4096, 1, true, 2},
-                        {4096, 5, true, 10},
-                        {32, 5, true, 4}}) {
-    const SampleCounts counts = sample_counts(c.rays, c.placements, c.at_vertex);
-    EXPECT_EQ(counts.samples, c.samples) << c.rays << ", " << c.placements;
-    EXPECT_EQ(counts.rays, c.rays / c.samples);
-  }
-}
-
-TEST(PlacementChoice, SamplesInTurnTakeAllPlacements) {
-  for (const std::uint32_t placements : {1u, 2u, 3u, 8u, 100u, 1000u}) {
-    for (const std::uint32_t random : {0u, 1u, 77u, 0xdeadbeefu}) {
-      std::vector<int> taken(placements);
-      for (std::uint32_t i = 0; i < 3 * placements; ++i)
-        ++taken.at(placement_of_sample(i, placements, random));
-      for (const int count : taken) EXPECT_EQ(count, 3);
-    }
-  }
-}
-
-// Sample k of a triangle lies in a part of it that k says. 40,000 triangles: a share of 1 / n has a
-// standard error of 0.5 / 200 at most.
-TEST(PlacementChoice, EachSampleTakesAnyPlacementEquallyOften) {
-  constexpr std::uint32_t kTriangles = 40000;
-  for (const std::uint32_t placements : {2u, 3u, 4u, 7u, 20u}) {
-    for (std::uint32_t sample = 0; sample < 2 * placements; ++sample) {
-      std::vector<int> taken(placements);
-      for (std::uint32_t t = 0; t < kTriangles; ++t)
-        ++taken.at(placement_of_sample(sample, placements, hash_of(7, t)));
-      for (const int count : taken)
-        EXPECT_NEAR(static_cast<double>(count) / kTriangles, 1.0 / placements, 0.0125)
-            << sample << " of " << placements;
-    }
-  }
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 #include <numeric>
 #include <random>
 
@@ -15,6 +14,7 @@
 #include "camera/view.hpp"
 #include "dapple/render.hpp"
 #include "dapple/shared/opacity.h"
+#include "support/same_bits.hpp"
 
 namespace dapple {
 namespace {
@@ -156,10 +156,6 @@ TEST(MediumOnDevice, HasTheNormalsOfPlacedMeshes) {
   expect_same_normals(scene);
 }
 
-bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
-}
-
 TEST(MediumOnDevice, ACropEqualsThatPartOfThePictureBitForBit) {
   const Scene scene = cloud();
   RenderOptions options = well_sampled(true);
@@ -249,7 +245,7 @@ TEST(OpacityVariance, IsStoredInTheLowestBitsOfCorrelations) {
     set_child_opacity(node, 3, opacity, box);
     EXPECT_EQ(variance_of_child(node, 3), variance_class(opacity));
     for (int pair = 0; pair < 3; ++pair) {
-      const float stored = correlation_decode(node.correlation[pair][3]);
+      const float stored = decode_correlation(node.correlation[pair][3]);
       EXPECT_LE(std::fabs(stored), 1.0f);
       EXPECT_NEAR(stored, opacity.normals.correlation()[pair], 0.5001f / 15);
     }

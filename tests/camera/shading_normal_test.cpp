@@ -171,6 +171,33 @@ TEST(ShadingNormal, NoNormalThatIsSeenFacesAway) {
   }
 }
 
+// From the rim of a lens rays see the side of a card that its middle does not see. Cards in a plane
+// that contains the axis of the lens, or almost: half of the rays see each side.
+TEST(ShadingNormal, FacesTheRayThatSawItNotTheMiddleOfTheLens) {
+  for (const bool perspective : {true, false}) {
+    Scene scene = scene_of(square(V3f(0, 0.7071f, 0.7071f)));
+    scene.lights.clear();
+    Camera camera = look_at(V3f(0, 3, perspective ? 0.05f : 0), V3f(0, 0, 0), V3f(0, 0, 1), 0.5f);
+    if (!perspective) camera.kind = Camera::Kind::orthographic;
+    camera.half_height = 1;
+    camera.lens_radius = 0.8f;
+    camera.focus_distance = 3;
+    scene.cameras = {camera};
+    RenderOptions options = options_of(Normals::shading);
+    options.spp = 64;
+    const Film film = render(scene, options).film;
+    double towards = 0, seen = 0;
+    for (std::size_t p = 0; p < film.find("A")->pixels.size(); ++p) {
+      const double alpha = film.find("A")->pixels[p];
+      if (alpha == 0) continue;
+      towards += alpha * film.find("N.Y")->pixels[p];
+      seen += alpha;
+    }
+    ASSERT_GT(seen, 10) << perspective;
+    EXPECT_NEAR(towards / seen, 0.7071, 0.02) << perspective;
+  }
+}
+
 // As exporters write them at folds: the sum of a triangle's normals is on its side, one is not.
 TEST(ShadingNormal, ThoseBehindTheirTriangleAreMirroredToItsFront) {
   Mesh mesh = square({0, 0, 1});

@@ -110,8 +110,8 @@ TEST_F(FramesCommand, ASequenceWritesAFileOfEveryKindForEachFrame) {
                            "a_08_visits.png", "a8.json", "a10.json", "a12.json"})
     EXPECT_TRUE(is_there(name)) << name;
   EXPECT_EQ(files_in_folder(), 3u * 4 + 1);
-  EXPECT_TRUE(contains(run.out, "frame 1 of 3, at 0.800 s")) << run.out;
-  EXPECT_TRUE(contains(run.out, "frame 3 of 3, at 1.200 s")) << run.out;
+  EXPECT_TRUE(contains(run.out, "frame 8 (1 of 3), at 0.800 s")) << run.out;
+  EXPECT_TRUE(contains(run.out, "frame 12 (3 of 3), at 1.200 s")) << run.out;
   EXPECT_TRUE(contains(run.out, "wrote a.0012.exr, a_12.png and a_12_visits.png")) << run.out;
   EXPECT_NEAR(height("a.0010.exr") - height("a.0008.exr"), 0.2, 0.1);
   EXPECT_NEAR(height("a.0012.exr"), height("a.0010.exr"), 1e-5) << "the animation ends at 1 s";

@@ -61,11 +61,11 @@ class FramesOptions : public ProgramRun {
         .write(reinterpret_cast<const char*>(glb.data()), static_cast<std::streamsize>(glb.size()));
   }
   /// Writes turn.glb: a sun shines on the back of a triangle until 1 s, and then on its front.
-  void write_turn() const {
+  void write_turn(const char* light = "sun") const {
     test::GltfBuilder b = test::one_triangle();
     b.doc["extensionsUsed"] = {"KHR_lights_punctual"};
     b.doc["extensions"]["KHR_lights_punctual"]["lights"] =
-        test::json::array({{{"type", "directional"}, {"name", "sun"}, {"intensity", 10}}});
+        test::json::array({{{"type", "directional"}, {"name", light}, {"intensity", 10}}});
     b.add("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 0.2}, {"znear", 0.1}}}});
     b.add("nodes", {{"translation", {0.3, 0.3, 5}}, {"camera", 0}});
     const int sun = b.add("nodes", {{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
@@ -123,8 +123,11 @@ TEST_F(FramesOptions, AFirstFrameThatShowsNothingLeavesTheFootprintToTheNext) {
 }
 
 TEST_F(FramesOptions, AFirstFrameThatIsLitFromBehindLeavesSkyAndExposureToTheNext) {
-  write_turn();
-  expect_frame_1_by_itself("turn.glb --passes ao,light,albedo,back");
+  for (const char* name : {"sun", "back"}) {
+    write_turn(name);
+    for (const char* passes : {"ao,light,albedo,back", "ao,light,albedo"})
+      expect_frame_1_by_itself(std::string("turn.glb --passes ") + passes);
+  }
 }
 
 TEST_F(FramesOptions, AFirstFrameThatShowsNothingLeavesTheExposureToTheNext) {

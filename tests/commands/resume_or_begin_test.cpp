@@ -45,6 +45,18 @@ TEST_F(ResumeOrBegin, GoesOnOrBeginsAnewWithTheSameBits) {
   EXPECT_EQ(changed.code, 0);
   EXPECT_TRUE(contains(changed.err, "since --resume a.ckpt: was made with")) << changed.err;
   EXPECT_FALSE(bytes_of(path("b.exr")) == whole);
+  EXPECT_EQ(bytes_of(path("a.ckpt.unfit")).size(), 1000u) << "the first one is still there";
+  EXPECT_TRUE(std::filesystem::exists(path("a.ckpt.unfit_2")));
+}
+
+TEST_F(ResumeOrBegin, KeepsACheckpointOfAnotherSpelling) {
+  ASSERT_EQ(resumed().code, 0);
+  const std::string saved = bytes_of(path("a.ckpt"));
+  const Outcome run = dapple(
+      "render 'scene:tree?leaves=400' --width 16 --height 12 --spp 8 -o b.exr --checkpoint "
+      "./a.ckpt --resume-or-begin a.ckpt");
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_TRUE(bytes_of(path("a.ckpt.unfit")) == saved);
 }
 
 TEST_F(ResumeOrBegin, OtherFailuresLeaveTheCheckpoint) {

@@ -173,16 +173,64 @@ TEST(Albedo, APixelOfManyTexelsIsTheirMean) {
   EXPECT_LE(std::sqrt(squares / 256), 0.03);
 }
 
+constexpr TexelWeights kByAlpha{TexelWeights::Kind::by_alpha, 0};
+
 TEST(Albedo, UnseenTexelsOfACutOutDoNotColourMeans) {
   ColorTexture texture;
   texture.width = texture.height = 2;
   texture.rgb = {255, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
   texture.alpha = {255, 0, 0, 0};
-  const std::vector<ColorLevel> levels = color_mip_levels(texture, {TexelWeights::kByAlpha});
+  const std::vector<ColorLevel> levels = color_mip_levels(texture, kByAlpha);
   ASSERT_EQ(levels.size(), 1u);
   EXPECT_NEAR(levels[0].color[0].x, 1, 1e-3);
   texture.alpha = {};
-  EXPECT_NEAR(color_mip_levels(texture, {TexelWeights::kByAlpha})[0].color[0].x, 0.25, 1e-6);
+  EXPECT_NEAR(color_mip_levels(texture, kByAlpha)[0].color[0].x, 0.25, 1e-6);
+}
+
+TEST(Albedo, UnseenTexelsHaveTheColourOfWhatIsSeenAroundThem) {
+  ColorTexture texture;
+  texture.width = 64;
+  texture.height = 32;
+  for (std::size_t i = 0; i < 64 * 32; ++i) {
+    const bool seen = i % 64 < 3 && i / 64 < 5;
+    const int red = seen ? 255 : 0;
+    texture.rgb.insert(texture.rgb.end(), {static_cast<std::uint8_t>(red), 0, 255});
+    texture.alpha.push_back(seen ? 255 : 0);
+  }
+  for (const ColorLevel& level : color_mip_levels(texture, kByAlpha))
+    for (const V3f& color : level.color) EXPECT_NEAR(color.x, 1, 1e-6) << level.width;
+  std::fill(texture.alpha.begin(), texture.alpha.end(), std::uint8_t{0});
+  EXPECT_NEAR(color_mip_levels(texture, kByAlpha).back().color[0].x, 15.0 / (64 * 32), 1e-6);
+}
+
+// Between a leaf and what is cut out around it half of a look-up is of texels that are not seen.
+TEST(Albedo, WhatIsCutOutDoesNotColourTheRim) {
+  for (const AlphaMode mode : {AlphaMode::mask, AlphaMode::blend}) {
+    Scene scene = square();
+    ColorTexture color;
+    Texture alpha;
+    color.width = color.height = alpha.width = alpha.height = 16;
+    for (std::size_t i = 0; i < 256; ++i) {
+      const bool seen = (i % 16 / 4 + i / 64) % 2 == 0;
+      color.rgb.insert(color.rgb.end(), 3, 255);
+      if (seen) color.rgb[3 * i + 1] = color.rgb[3 * i + 2] = 0;
+      alpha.alpha.push_back(seen ? 255 : 0);
+    }
+    color.alpha = alpha.alpha;
+    scene.color_textures = {color};
+    scene.textures = {alpha};
+    Material& material = scene.materials[0];
+    material.color_texture = material.alpha_texture = 0;
+    material.alpha_mode = mode;
+    for (const int size : {4, 16, 64}) {
+      const Film film = render(scene, picture(size, 4)).film;
+      for (std::size_t p = 0; p < film.find("A")->pixels.size(); ++p) {
+        if (at(film, "A", p) == 0) continue;
+        EXPECT_NEAR(at(film, "albedo.R", p), 1, 2e-3) << size;
+        EXPECT_NEAR(at(film, "albedo.G", p), 0, 2e-3) << size;
+      }
+    }
+  }
 }
 
 TEST(Albedo, TexelsCountAsTheMaterialSeesThem) {

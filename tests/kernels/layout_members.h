@@ -31,7 +31,7 @@
   MEMBER(MaterialRecord, spare) MEMBER(MaterialRecord, mip_offset)                           \
   STRUCT(InstanceRecord)                                                                     \
   MEMBER(InstanceRecord, to_object) MEMBER(InstanceRecord, to_world)                         \
-  MEMBER(InstanceRecord, inverse_area_scale) MEMBER(InstanceRecord, root)                    \
+  MEMBER(InstanceRecord, inverse_det) MEMBER(InstanceRecord, root)                           \
   MEMBER(InstanceRecord, light) MEMBER(InstanceRecord, source)                                \
   STRUCT(Ray)                                                                                \
   MEMBER(Ray, origin) MEMBER(Ray, t_max) MEMBER(Ray, direction) MEMBER(Ray, solid_angle)     \

@@ -2,6 +2,12 @@
    One item makes one sample. */
 #include "lights/light.cl"
 
+inline float2 sample_2d(uint pixel, uint index, uint pair, uint seed) {
+  float x, y;
+  sample_square(pixel, index, pair, seed, &x, &y);
+  return (float2)(x, y);
+}
+
 __kernel void sobol_points(__global float* points, uint pixel, uint pair, uint seed, uint first,
                            uint count) {
   const uint item = get_global_id(0);

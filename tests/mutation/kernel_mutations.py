@@ -25,8 +25,8 @@ MUTATIONS = [
         r"^(Packet|ClosedForm)\."),
     Mutation(
         "normals-face-away-from-the-viewer", "kernels/shading/smooth_point.clh",
-        "if (!(towards * straight < 0.0f)) return normal;",
-        "if (straight > 0.0f) return normal;",
+        "if (!(towards < 0.0f)) return normal;",
+        "return normal;",
         r"^ShadingNormal\."),
     Mutation(
         "mass-poles-decoded-on-the-other-side", "kernels/opacity/footprint.clh",
@@ -50,8 +50,8 @@ MUTATIONS = [
         r"^Roulette\."),
     Mutation(
         "roulette-keeps-what-single-rays-have", "kernels/occlusion/traverse.clh",
-        "result.value < hidden ? 0.0f : max(result.value, roulette_floor(params));",
-        "result.value < hidden ? 0.0f : result.value;",
+        "result.value < min_transmittance ? 0.0f : max(result.value, roulette_floor(params));",
+        "result.value < min_transmittance ? 0.0f : result.value;",
         r"^Roulette\."),
     Mutation(
         "roulette-keeps-what-scalar-rays-have", "kernels/scalar/transmittance.clh",
@@ -65,17 +65,17 @@ MUTATIONS = [
         r"^(Packet|Traversal|Oracle|OracleRays)\."),
     Mutation(
         "swapped-axes-of-opacity", "kernels/occlusion/packet_depth_many.clh",
-        "  const float8 y = decode_depth(node, 1) * boxes->faces[1];\n"
-        "  const float8 z = decode_depth(node, 2) * boxes->faces[2];\n",
-        "  const float8 y = decode_depth(node, 2) * boxes->faces[1];\n"
-        "  const float8 z = decode_depth(node, 1) * boxes->faces[2];\n",
+        "  const float8 y = decode_depths(node, 1) * boxes->faces[1];\n"
+        "  const float8 z = decode_depths(node, 2) * boxes->faces[2];\n",
+        "  const float8 y = decode_depths(node, 2) * boxes->faces[1];\n"
+        "  const float8 z = decode_depths(node, 1) * boxes->faces[2];\n",
         r"^(Packet|PacketPicture|PrefilterConvergence|Traversal)\."),
     Mutation(
         "swapped-axes-of-opacity-at-points", "kernels/occlusion/packet_depth_one.clh",
-        "  const float8 part_y = decode_depth(node, 1) * facing_y;\n"
-        "  const float8 part_z = decode_depth(node, 2) * facing_z;\n",
-        "  const float8 part_y = decode_depth(node, 2) * facing_y;\n"
-        "  const float8 part_z = decode_depth(node, 1) * facing_z;\n",
+        "  const float8 part_y = decode_depths(node, 1) * facing_y;\n"
+        "  const float8 part_z = decode_depths(node, 2) * facing_z;\n",
+        "  const float8 part_y = decode_depths(node, 2) * facing_y;\n"
+        "  const float8 part_z = decode_depths(node, 1) * facing_z;\n",
         r"^(Packet|PointSets|PointAo|PrefilterConvergence|Traversal)\."),
     Mutation(
         "pdf-of-dome-off-by-two", "kernels/lights/dome_samples.clh",
@@ -245,8 +245,8 @@ MUTATIONS = [
         r"^(Strands|SegmentBlock)\."),
     Mutation(
         "scalar-swapped-axes-of-opacity", "kernels/scalar/child_depth.clh",
-        "depth_decode(node->depth[0][slot]), depth_decode(node->depth[1][slot]),",
-        "depth_decode(node->depth[1][slot]), depth_decode(node->depth[0][slot]),",
+        "decode_depth(node->depth[0][slot]), decode_depth(node->depth[1][slot]),",
+        "decode_depth(node->depth[1][slot]), decode_depth(node->depth[0][slot]),",
         r"^ScalarKernels\."),
     Mutation(
         "rays-to-lights-reach-them", "kernels/lights/light.cl",

@@ -263,9 +263,9 @@ MUTATIONS = [
         "sample.weight[k] = barycentric[k];",
         r"^(SurfaceSamples|Bake|BakeClosedForm)\."),
     Mutation(
-        "hidden-vertices-get-a-sum", "host/bake/vertex_bake.cpp",
-        "ao[hidden.group] = sum(ao, 0.0f) / count;",
-        "ao[hidden.group] = sum(ao, 0.0f);",
+        "enclosed-vertices-get-a-sum", "host/bake/vertex_bake.cpp",
+        "ao[enclosed.group] = sum(ao, 0.0f) / count;",
+        "ao[enclosed.group] = sum(ao, 0.0f);",
         r"^(Bake|BakeClosedForm)\."),
     Mutation(
         "dilation-from-the-farthest-texel", "host/bake/texture/dilation.cpp",
@@ -283,7 +283,7 @@ MUTATIONS = [
         "values[i].bent;",
         r"^MeshPlacements\."),
     Mutation(
-        "dark-values-taken-for-hidden", "host/bake/samples/value_sums.cpp",
+        "dark-values-taken-for-enclosed", "host/bake/samples/value_sums.cpp",
         "if (is_dark(i) && has_inside(i)) continue;",
         "if (is_dark(i)) continue;",
         r"^InsideSamples\."),
@@ -293,7 +293,7 @@ MUTATIONS = [
         "between += of_point.squares;",
         r"^BiasCorrection\."),
     Mutation(
-        "hidden-texels-stay-black", "host/bake/texture/texture_bake.cpp",
+        "enclosed-texels-stay-black", "host/bake/texture/texture_bake.cpp",
         "nearest_valid(known_, texture_.size, all, covered_)",
         "nearest_valid(known_, texture_.size, 0 * all, covered_)",
         r"^BakeTexture\."),

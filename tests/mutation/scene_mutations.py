@@ -5,8 +5,8 @@ from mutation import Mutation
 MUTATIONS = [
     Mutation(
         "emission-of-what-is-cut-out", "host/device/upload/light_upload.cpp",
-        "const double area = 0.5 * cross.length() * double{opacities[t]};",
-        "const double area = 0.5 * cross.length() * (opacities[t] > 0 ? 1 : 0);",
+        "const double area = 0.5 * edge1.cross(edge2).length() * double{opacities[t]};",
+        "const double area = 0.5 * edge1.cross(edge2).length() * (opacities[t] > 0 ? 1 : 0);",
         r"^EmissiveMesh\."),
     Mutation(
         "placements-move-by-the-first-one", "host/render/frame_match.cpp",

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <random>
 
-#include "passes/point_order.hpp"
+#include "sampling/point_order.hpp"
 #include "support/scenes/scene_on_device.hpp"
 
 namespace dapple {

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "support/same_bits.hpp"
 #include "support/scenes/scene_on_device.hpp"
 
 namespace dapple {
@@ -44,11 +45,6 @@ class Determinism : public ::testing::Test {
 std::string bytes_of(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
-}
-
-// Compares bits, so that NaN equals itself and -0 differs from 0.
-bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
 }
 
 TEST_F(Determinism, TheProgramWritesTheSameBytesAgainAndWithAnyNumberOfDeviceThreads) {
@@ -161,11 +157,6 @@ TEST(Crop, EqualsTheSamePartOfTheWholePictureBitForBit) {
   }
 }
 
-template <class Array>
-bool same_bytes(const Array& a, const Array& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])) == 0;
-}
-
 TEST(Bvh, IsTheSameByteForByteWhateverTheThreads) {
   for (const char* name : {"scene:tree?leaves=20000", "scene:forest?trees=40&leaves=300"}) {
     const Scene scene = make_procedural(name);
@@ -175,9 +166,9 @@ TEST(Bvh, IsTheSameByteForByteWhateverTheThreads) {
     };
     const SceneBvh one = built(1), two = built(2), four = built(4);
     for (const SceneBvh* other : {&two, &four}) {
-      EXPECT_TRUE(same_bytes(one.nodes, other->nodes)) << name;
-      EXPECT_TRUE(same_bytes(one.blocks, other->blocks)) << name;
-      EXPECT_TRUE(same_bytes(one.instances, other->instances)) << name;
+      EXPECT_TRUE(same_bits(one.nodes, other->nodes)) << name;
+      EXPECT_TRUE(same_bits(one.blocks, other->blocks)) << name;
+      EXPECT_TRUE(same_bits(one.instances, other->instances)) << name;
       EXPECT_EQ(one.root, other->root);
       EXPECT_EQ(one.statistics.root_opacity[1], other->statistics.root_opacity[1]) << name;
     }

@@ -179,7 +179,7 @@ double mean_difference(const std::vector<float>& a, const std::vector<float>& b)
 // The second moment builds the BVH anew, with what a refit needs, and the third refits it. Of each
 // pixel's camera rays the moments have thirds: those of the three shards of a picture. Exact rays
 // hit the same triangles in any BVH, so that only sums are rounded. Prefiltered, a refitted tree is
-// within 0.003 of a fresh one (tests/bvh/refit/renderer_test.cpp), and has a third of the rays.
+// within 0.003 of a fresh one (tests/render/renderer_test.cpp), and has a third of the rays.
 TEST(Shutter, ATreeInTheWindIsTheMeanOfFreshPicturesOfItsMoments) {
   constexpr int kTimes = 3;
   const Scene calm = make_procedural("scene:tree?leaves=2000");

@@ -61,6 +61,10 @@ TEST(UnseenLights, WhereNothingIsSeenThereIsNothingToSay) {
   EXPECT_TRUE(notes_of_unseen_lights(film, {sun_along({0, 1, 0}, "a")}).empty());
   film.planes[0].pixels[0] = 1;
   EXPECT_EQ(notes_of_unseen_lights(film, {sun_along({0, 1, 0}, "a")}).size(), 1u);
+  for (const char* channel : {"light.a.back.R", "light.a.back.G", "light.a.back.B"})
+    film.planes.push_back({channel, {0, 1}});
+  EXPECT_TRUE(notes_of_unseen_lights(film, {sun_along({0, 1, 0}, "a")}).empty())
+      << "what is behind is seen";
 }
 
 }  // namespace

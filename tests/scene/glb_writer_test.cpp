@@ -237,6 +237,11 @@ TEST(GlbWriter, ALensIsWrittenAsExtrasOfItsCamera) {
 TEST(GlbWriter, EmissionAboveOneNeedsTheStrengthExtension) {
   Scene scene = small_scene();
   scene.materials[0].emission = {2, 8, 4};
+  const Json dark = write_and_take_apart(scene).json;
+  EXPECT_FALSE(dark["materials"][0].contains("emissiveFactor")) << "no instance emits";
+  EXPECT_FALSE(dark.contains("extensionsUsed"));
+  scene.lights.resize(1);
+  scene.instances[0].light = 0;
   const Json json = write_and_take_apart(scene).json;
   EXPECT_EQ(json["materials"][0]["emissiveFactor"], Json({0.25, 1.0, 0.5}));
   EXPECT_EQ(

@@ -148,6 +148,16 @@ TEST(HairFile, SegmentsWithoutLengthAreDroppedWithoutAGap) {
   expect_says(scene.warnings[1], "dropped 1 strands that are no longer than thick");
 }
 
+TEST(HairFile, ShortSegmentsFarFromTheOriginAreKept) {
+  HairBuilder builder;
+  builder.strands = 1;
+  builder.default_segments = 3;
+  constexpr float kFar = 1000;  // a float's step there is 0.00006
+  builder.points = {kFar, 0, 0, kFar + 0.001f, 0, 0, kFar + 0.002f, 0, 0, kFar + 0.003f, 0, 0};
+  builder.thickness = std::vector<float>(4, 0.0001f);
+  EXPECT_EQ(read(builder).meshes[0].primitive_count(), 3u);
+}
+
 TEST(HairFile, StrandsNoLongerThanThickAreDroppedWithACount) {
   HairBuilder builder = two_strands();
   builder.thickness = {2, 2, 2, 1.75f, 1.75f, 1.75f};  // both strands have the length 2

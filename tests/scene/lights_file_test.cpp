@@ -157,6 +157,13 @@ TEST(LightsFile, ASunsIrradianceIsThatOfItsDisk) {
   EXPECT_EQ(light.radiance.z, 0);
 }
 
+TEST(LightsFile, ASunMayBeAsBrightAsAnyLight) {
+  const std::string sun = R"("type": "sun", "direction": [0, -1, 0], "irradiance": )";
+  EXPECT_NEAR(load_one(sun + "1e25").at(0).radiance.x / 1.47e29, 1, 0.01);
+  EXPECT_EQ(complaint_about(sun + "1e26"),
+            "light 1: irradiance is too large for so small an angle_degrees");
+}
+
 TEST(LightsFile, ASunWithoutAnAngleIsAsLargeAsOurs) {
   const Light light = load_one(R"("type": "sun", "direction": [0, -1, 0], "radiance": 7)").at(0);
   EXPECT_NEAR(light.angular_radius, 0.2665 * std::numbers::pi / 180, 1e-7);

@@ -106,9 +106,9 @@ class ReferenceTraversal {
     float depths[3], correlations[3];
     for (int axis = 0; axis < 3; ++axis) {
       const int next = (axis + 1) % 3;
-      depths[axis] = depth_decode(node.depth[axis][slot]);
+      depths[axis] = decode_depth(node.depth[axis][slot]);
       correlations[axis] = std::copysign(1.0f, direction[axis] * direction[next]) *
-                           correlation_decode(node.correlation[axis][slot]);
+                           decode_correlation(node.correlation[axis][slot]);
     }
     const float weight = thin ? 1.0f : pole_weight(node, slot, c, direction);
     return weight *
@@ -214,8 +214,8 @@ class ReferenceTraversal {
       object.direction[row] = r.dot(world.direction);
       object.origin[row] = r.dot(world.origin) + m[4 * row + 3];
     }
-    object.first_area *= instance.inverse_area_scale;
-    object.solid_angle *= instance.inverse_area_scale;
+    object.first_area *= instance.inverse_det;
+    object.solid_angle *= instance.inverse_det;
     visit(walk, object, instance.root, false);
   }
 

@@ -1,6 +1,6 @@
 #include "bake/inside/box_tree.hpp"
 
-#include "passes/point_order.hpp"
+#include "sampling/point_order.hpp"
 
 namespace dapple {
 

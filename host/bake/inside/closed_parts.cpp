@@ -9,7 +9,8 @@
 
 #include "bake/samples/surface_samples.hpp"
 #include "bake/vertex_groups.hpp"
-#include "bvh/opacity/connected_vertices.hpp"
+#include "bvh/opacity/closed_surface.hpp"
+#include "bvh/opacity/disjoint_sets.hpp"
 #include "bvh/opacity/triangle_opacity.hpp"
 
 namespace dapple {
@@ -17,11 +18,6 @@ namespace {
 
 /// Share of the edges of a closed part that may lack a neighbour: up to a tube of three sides.
 constexpr double kOpenEdges = 1.0 / 3 + 1e-6;
-
-/// Sum of the area vectors of a closed part, relative to its area: up to a tube five times as long
-/// as its radius with an open end. As in host/bvh/opacity/closed_surface.cpp, where parts share
-/// indices of vertices: to it, the six sides of a cube with hard edges are six sheets.
-constexpr double kOpenArea = 0.1;
 
 /// An edge of a triangle, which is joined to others by the positions of its ends.
 struct Edge {
@@ -38,7 +34,7 @@ struct PartSums {
   double area = 0;
   [[nodiscard]] bool is_closed() const {
     return edges > 0 && static_cast<double>(open) <= kOpenEdges * static_cast<double>(edges) &&
-           vector.length() <= kOpenArea * area;
+           vector.length() <= kOpenShare * area;
   }
 };
 
@@ -69,7 +65,7 @@ void for_each_edge(std::span<const Edge> edges, Visit visit) {
 
 /// For each triangle the first one of its part.
 std::vector<std::uint32_t> joined_triangles(const std::vector<Edge>& edges, std::size_t triangles) {
-  ConnectedVertices joined(triangles);
+  DisjointSets joined(triangles);
   for_each_edge(edges, [&](std::span<const Edge> same) {
     for (const Edge& edge : same) joined.join(same.front().triangle, edge.triangle);
   });

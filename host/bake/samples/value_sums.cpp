@@ -18,7 +18,7 @@ constexpr float kDark = 1e-3f;
 
 /// Samples after which a place with samples inside closed geometry is known to see nothing: all of
 /// a few rays may be blocked by chance.
-constexpr float kSamplesOfHidden = 8;
+constexpr float kSamplesOfEnclosed = 8;
 
 /// A side is surely the brighter one if the difference is so many standard errors.
 constexpr float kSure = 1.75f;
@@ -303,10 +303,10 @@ std::vector<float> ValueSums::missing_samples(float target) const {
   tbb::parallel_for(std::size_t{0}, factors.size(), [&](std::size_t i) {
     const BothSides& place = of_place_[i];
     const auto index = static_cast<std::uint32_t>(i);
-    const bool may_be_hidden = has_inside(index) && (!is_sampled(index) || is_dark(index));
+    const bool may_be_enclosed = has_inside(index) && (!is_sampled(index) || is_dark(index));
     const float samples = place.front.count() + place.back.count() + place.inside_count();
-    factors[i] = std::max(
-        {1.0f, factors[i] / (target * target), may_be_hidden ? kSamplesOfHidden / samples : 1.0f});
+    factors[i] = std::max({1.0f, factors[i] / (target * target),
+                           may_be_enclosed ? kSamplesOfEnclosed / samples : 1.0f});
   });
   return factors;
 }

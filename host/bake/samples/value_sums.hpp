@@ -86,7 +86,7 @@ class ValueSums {
   [[nodiscard]] std::vector<float> squared_errors() const;
 
   /// For each place, by what factor the number of its samples must grow for a standard error of
-  /// `target`; 1: enough. Places that may be hidden need more than others.
+  /// `target`; 1: enough. Places that may be enclosed need more than others.
   [[nodiscard]] std::vector<float> missing_samples(float target) const;
 
   /// The values of all places. Places without samples have AO 1: there is nothing to occlude.

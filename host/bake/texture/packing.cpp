@@ -61,7 +61,7 @@ std::uint32_t smallest_size(std::size_t rects, std::uint32_t gap) {
     const std::size_t row = (size + gap) / (2 + gap);  // a side of any length touches two texels
     return row * row >= rects;
   };
-  while (!fits()) size *= 2;
+  while (!fits()) ++size;
   return size;
 }
 

@@ -24,7 +24,7 @@ struct Packing {
 /// bilinear lookups inside it read no other. If they don't fit at any scale, the result is empty.
 Packing pack(const std::vector<V2f>& sizes, std::uint32_t size, std::uint32_t gap);
 
-/// The smallest power of two for which pack() succeeds.
+/// The smallest size for which pack() succeeds.
 std::uint32_t smallest_size(std::size_t rects, std::uint32_t gap);
 
 }  // namespace dapple

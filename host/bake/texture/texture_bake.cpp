@@ -177,7 +177,7 @@ void TextureBake::add_values(const SampledTexels& texels, const std::vector<Plac
     const std::uint32_t texel = texels.texel(i);
     covered_[texel] = true;
     if (!values[i].known) {
-      ++statistics.hidden_texels;
+      ++statistics.enclosed_texels;
       continue;
     }
     if (values[i].dark) ++statistics.dark_texels;
@@ -221,14 +221,15 @@ void TextureBake::take_nearest(const std::vector<std::uint32_t>& nearest, bool c
   }
 }
 
-void TextureBake::fill_hidden_texels(BakeStatistics& statistics) {
+void TextureBake::fill_enclosed_texels(BakeStatistics& statistics) {
   const int all = static_cast<int>(texture_.size);
   if (known_ == covered_) return;
   take_nearest(nearest_valid(known_, texture_.size, all, covered_), true);
   // Texels that several meshes cover were counted for each of them.
   const auto left = std::count(covered_.begin(), covered_.end(), true) -
                     std::count(known_.begin(), known_.end(), true);
-  statistics.hidden_texels -= std::min(statistics.hidden_texels, static_cast<std::size_t>(left));
+  statistics.enclosed_texels -=
+      std::min(statistics.enclosed_texels, static_cast<std::size_t>(left));
 }
 
 BakedTexture TextureBake::finish(BakeStatistics& statistics) {
@@ -238,7 +239,7 @@ BakedTexture TextureBake::finish(BakeStatistics& statistics) {
     if (options_.bent) texture_.bent[i].normalize();
     for (std::vector<V3f>& light : texture_.light) light[i] /= weight_[i];
   }
-  fill_hidden_texels(statistics);
+  fill_enclosed_texels(statistics);
   take_nearest(nearest_valid(known_, texture_.size, options_.margin), false);
   for (std::size_t i = 0; i < known_.size(); ++i)
     if (!known_[i] && !covered_[i]) texture_.ao[i] = 1;

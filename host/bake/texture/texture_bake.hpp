@@ -27,7 +27,7 @@ class TextureBake {
   void take_nearest(const std::vector<std::uint32_t>& nearest, bool covered);
   /// Texels inside closed geometry take the nearest value of their charts. Charts that lie inside
   /// as a whole are never seen, and stay black.
-  void fill_hidden_texels(BakeStatistics& statistics);
+  void fill_enclosed_texels(BakeStatistics& statistics);
   void join_all_seams();
   void add_values(const SampledTexels& texels, const std::vector<PlaceValue>& values,
                   const std::vector<std::vector<V3f>>& light, BakeStatistics& statistics);

@@ -118,7 +118,7 @@ const std::vector<V2f>& given_uvs(const Scene& scene, const BakeOptions& options
 
 }  // namespace
 
-std::vector<bool> textured_meshes(const Scene& scene, BakeInstances kind) {
+std::vector<bool> textured_meshes(const Scene& scene, BakePlacement kind) {
   const std::vector<std::size_t> placements = placement_counts(scene, kind);
   std::set<std::pair<std::uint32_t, std::uint32_t>> seen;
   std::vector<bool> textured;
@@ -194,7 +194,7 @@ TextureLayout given_layout(const Scene& scene, const BakeOptions& options) {
 }
 
 double share_without_texels(const Scene& scene, const std::vector<std::vector<V2f>>& uvs,
-                            std::uint32_t size, BakeInstances placement) {
+                            std::uint32_t size, BakePlacement placement) {
   const std::vector<bool> textured = textured_meshes(scene, placement);
   double all = 0, without = 0;
   for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) {

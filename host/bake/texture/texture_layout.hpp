@@ -12,7 +12,7 @@ namespace dapple {
 
 /// Whether each mesh is in the texture: no strands, none without a placement, and of meshes that
 /// are one mesh of a file in several poses only the first one.
-std::vector<bool> textured_meshes(const Scene& scene, BakeInstances kind);
+std::vector<bool> textured_meshes(const Scene& scene, BakePlacement kind);
 
 /// The point of the texture that coordinates name: the border where they are rounding errors, 1e-5
 /// at most, outside of [0,1]; none if they are farther outside.
@@ -29,6 +29,6 @@ TextureLayout given_layout(const Scene& scene, const BakeOptions& options);
 /// triangles have no area in a `size` x `size` texture, [0,1]; for texture coordinates as
 /// BakeOptions::texture_uvs. Values of such triangles cannot be stored.
 double share_without_texels(const Scene& scene, const std::vector<std::vector<V2f>>& uvs,
-                            std::uint32_t size, BakeInstances placement);
+                            std::uint32_t size, BakePlacement placement);
 
 }  // namespace dapple

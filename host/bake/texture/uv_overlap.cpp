@@ -1,5 +1,6 @@
 #include "bake/texture/uv_overlap.hpp"
 
+#include <Imath/ImathBox.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -39,6 +40,22 @@ void visit_centres(const V2f* uv, std::uint32_t size, Visit visit) {
       if (inside) visit(x, y);
     }
   }
+}
+
+/// `size`, or a half of it, a quarter and so on where triangles are so many and so large that their
+/// texels would take seconds: all cards of a forest may show the same texture.
+std::uint32_t affordable_size(const std::vector<std::vector<V2f>>& corners, std::uint32_t size) {
+  constexpr double kMostTexels = 1 << 28;  // half a second
+  constexpr std::uint32_t kLeastSize = 64;
+  double area = 0;  // of the rectangles around triangles, in textures
+  for (const std::vector<V2f>& uvs : corners)
+    for (std::size_t i = 0; i < uvs.size(); i += 3) {
+      Imath::Box2f box;
+      for (std::size_t k = 0; k < 3; ++k) box.extendBy(uvs[i + k]);
+      area += double{box.size().x} * double{box.size().y};
+    }
+  while (size > kLeastSize && area * size * size > kMostTexels) size /= 2;
+  return size;
 }
 
 /// The triangles at the centres of texels, mesh after mesh.
@@ -114,34 +131,29 @@ class TexelUse {
 }  // namespace
 
 UvOverlap find_overlap(const Scene& scene, const std::vector<std::vector<V2f>>& uvs,
-                       std::uint32_t size, BakeInstances placement) {
-  TexelUse use(size);
+                       std::uint32_t size, BakePlacement placement) {
+  std::vector<std::vector<V2f>> corners(scene.meshes.size());
   const std::vector<bool> textured = textured_meshes(scene, placement);
   for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) {
-    const Mesh& mesh = scene.meshes[m];
     if (!textured[m]) continue;
-    for (std::size_t t = 0; t < mesh.primitive_count(); ++t) {
-      V2f uv[3];
-      for (std::size_t k = 0; k < 3; ++k) {
-        const std::optional<V2f> p = texture_point(uvs.at(m).at(mesh.indices[3 * t + k]));
-        if (!p) return {std::numeric_limits<double>::infinity(), 0, 0};
-        uv[k] = *p;
-      }
-      use.add(uv, m);
+    for (const std::uint32_t vertex : scene.meshes[m].indices) {
+      const std::optional<V2f> p = texture_point(uvs.at(m).at(vertex));
+      if (!p) return {std::numeric_limits<double>::infinity(), 0, 0};
+      corners[m].push_back(*p);
     }
   }
-  return use.overlap();
+  return find_overlap(corners, size);
 }
 
 UvOverlap find_overlap(const std::vector<std::vector<V2f>>& corners, std::uint32_t size) {
-  TexelUse use(size);
+  TexelUse use(affordable_size(corners, size));
   for (std::uint32_t m = 0; m < corners.size(); ++m)
     for (std::size_t i = 0; i < corners[m].size(); i += 3) use.add(&corners[m][i], m);
   return use.overlap();
 }
 
 double uv_overlap(const Scene& scene, const std::vector<std::vector<V2f>>& uvs, std::uint32_t size,
-                  BakeInstances placement) {
+                  BakePlacement placement) {
   check_geometry(scene);
   check_range("uv_overlap: size", double{1.0 * size}, 1, 16384);
   const std::vector<bool> textured = textured_meshes(scene, placement);

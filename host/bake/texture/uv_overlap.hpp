@@ -18,7 +18,7 @@ struct UvOverlap {
 
 /// For coordinates as BakeOptions::texture_uvs, of the meshes that a bake with `placement` bakes.
 UvOverlap find_overlap(const Scene& scene, const std::vector<std::vector<V2f>>& uvs,
-                       std::uint32_t size, BakeInstances placement);
+                       std::uint32_t size, BakePlacement placement);
 
 /// For corners as TextureLayout::corners.
 UvOverlap find_overlap(const std::vector<std::vector<V2f>>& corners, std::uint32_t size);

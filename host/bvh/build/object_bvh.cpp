@@ -66,7 +66,7 @@ std::vector<float> uniform_opacities(const Scene& scene, const OpaqueTexels& tex
   object.opaque = opaque;
   object.cut_out = cut_out;
   object.translucent = translucent;
-  object.triangles = object.opaque + object.cut_out + object.translucent;
+  object.primitive_count = object.opaque + object.cut_out + object.translucent;
   return opacities;
 }
 
@@ -299,10 +299,10 @@ BuiltObject build_object(const Scene& scene, const OpaqueTexels& texels, const M
   ObjectBvh& object = built.object;
   object.has_strands = mesh.has_strands();
   const std::vector<float> opacities = triangle_opacities(scene, texels, mesh, object);
-  if (object.triangles == 0) return built;
+  if (object.primitive_count == 0) return built;
   // Not initialized: the page faults then happen in the threads that write the pages.
-  const auto storage = std::make_unique_for_overwrite<PrimitiveBox[]>(object.triangles);
-  const std::span boxes(storage.get(), object.triangles);
+  const auto storage = std::make_unique_for_overwrite<PrimitiveBox[]>(object.primitive_count);
+  const std::span boxes(storage.get(), object.primitive_count);
   if (mesh.has_strands())
     build_strands(mesh, opacities, boxes, built);
   else

@@ -24,8 +24,8 @@ struct ObjectSummary {
   std::uint32_t stack = 0;   ///< traversal stack entries needed
   double sah_cost = 0;       ///< expected node visits of a ray through `box`
   bool has_strands = false;
-  /// Triangles, or segments, that are not fully transparent.
-  std::size_t triangles = 0, opaque = 0, cut_out = 0, translucent = 0;
+  /// Triangles, or segments, that are not fully transparent; of these by kind.
+  std::size_t primitive_count = 0, opaque = 0, cut_out = 0, translucent = 0;
 };
 
 /// The BVH of an object. Its indices (child_base, prim_base, codes of textured triangles) count

@@ -73,12 +73,13 @@ void build_missing(const Scene& scene, std::vector<Work>& works, BvhStatistics& 
 void share_out_seconds(std::vector<Work>& works, const BvhStatistics& statistics) {
   double triangles = 0;
   for (const Work& work : works) {
-    if (!work.is_read) triangles += static_cast<double>(work.finished.object.triangles);
+    if (!work.is_read) triangles += static_cast<double>(work.finished.object.primitive_count);
   }
   for (Work& work : works) {
-    if (work.is_read || work.finished.object.triangles == 0) continue;
+    if (work.is_read || work.finished.object.primitive_count == 0) continue;
     work.finished.build_seconds = (statistics.build_seconds + statistics.prefilter_seconds) *
-                                  static_cast<double>(work.finished.object.triangles) / triangles;
+                                  static_cast<double>(work.finished.object.primitive_count) /
+                                  triangles;
   }
 }
 

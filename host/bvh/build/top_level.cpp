@@ -108,7 +108,7 @@ PlacedInstance place(const Instance& instance, const ObjectSummary& object, std:
   InstanceRecord& record = placed_instance.record;
   store_rows(instance.to_world, record.to_world);
   store_rows(instance.to_world.inverse(), record.to_object);
-  record.inverse_area_scale = static_cast<float>(1.0 / matrix_scale(instance.to_world));
+  record.inverse_det = static_cast<float>(1.0 / matrix_scale(instance.to_world));
   record.root = root;
   record.light = static_cast<std::uint32_t>(instance.light + 1);
   record.source = static_cast<std::uint32_t>(source);
@@ -207,6 +207,34 @@ TopLevel build_top(const std::vector<PlacedInstance>& placed, std::size_t first_
   return top;
 }
 
+/// The instances whose object is not empty, by index into Scene::instances. Counts what they place.
+/// Throws Error if there are none, or too many.
+std::vector<std::size_t> filled_instances(const Scene& scene,
+                                          const std::vector<ObjectSummary>& objects,
+                                          BvhStatistics& statistics) {
+  statistics.instanced_triangles = statistics.instanced_segments = 0;
+  std::vector<std::size_t> indices;
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    const ObjectSummary& object = objects[scene.instances[i].mesh];
+    if (object.box.isEmpty()) continue;
+    indices.push_back(i);
+    (object.has_strands ? statistics.instanced_segments : statistics.instanced_triangles) +=
+        object.primitive_count;
+  }
+  if (indices.empty()) {
+    throw Error(ErrorKind::input,
+                fmt::format("{}: nothing to hit: every triangle and segment is fully transparent",
+                            source_name(scene)));
+  }
+  if (indices.size() >= DAPPLE_MAX_BLOCKS) {  // higher bits of prim_base are not theirs
+    throw Error(ErrorKind::failed,
+                fmt::format("{}: {} instances, fewer than {} are possible; merge some",
+                            source_name(scene), indices.size(), DAPPLE_MAX_BLOCKS));
+  }
+  statistics.instances = indices.size();
+  return indices;
+}
+
 void check_stack(std::uint32_t needed, const std::string& source) {
   if (needed <= DAPPLE_STACK_SIZE) return;
   throw Error(ErrorKind::failed,
@@ -222,42 +250,22 @@ LargeVector<BvhNode> place_instances(SceneBvh& bvh, const Scene& scene,
                                      const std::vector<ObjectOffsets>& offsets) {
   const auto start = std::chrono::steady_clock::now();
   BvhStatistics& statistics = bvh.statistics;
-  bvh.bounds.makeEmpty();
-  statistics.instanced_triangles = statistics.instanced_segments = 0;
-  std::vector<std::size_t> sources;
-  std::uint32_t object_stack = 0;
-  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
-    const ObjectSummary& object = objects[scene.instances[i].mesh];
-    if (object.box.isEmpty()) continue;
-    sources.push_back(i);
-    (object.has_strands ? statistics.instanced_segments : statistics.instanced_triangles) +=
-        object.triangles;
-    object_stack = std::max(object_stack, object.stack);
-  }
-  const std::string source = source_name(scene);
-  if (sources.empty()) {
-    throw Error(
-        ErrorKind::input,
-        fmt::format("{}: nothing to hit: every triangle and segment is fully transparent", source));
-  }
-  if (sources.size() >= DAPPLE_MAX_BLOCKS) {  // higher bits of prim_base are not theirs
-    throw Error(ErrorKind::failed,
-                fmt::format("{}: {} instances, fewer than {} are possible; merge some", source,
-                            sources.size(), DAPPLE_MAX_BLOCKS));
-  }
-  std::vector<PlacedInstance> placed(sources.size());
-  tbb::parallel_for(std::size_t{0}, sources.size(), [&](std::size_t i) {
-    const Instance& instance = scene.instances[sources[i]];
-    placed[i] = place(instance, objects[instance.mesh], offsets[instance.mesh].node, sources[i]);
+  const std::vector<std::size_t> indices = filled_instances(scene, objects, statistics);
+  std::vector<PlacedInstance> placed(indices.size());
+  tbb::parallel_for(std::size_t{0}, indices.size(), [&](std::size_t i) {
+    const Instance& instance = scene.instances[indices[i]];
+    placed[i] = place(instance, objects[instance.mesh], offsets[instance.mesh].node, indices[i]);
   });
+  bvh.bounds.makeEmpty();
+  std::uint32_t object_stack = 0;
   for (std::size_t i = 0; i < placed.size(); ++i) {
     const Box3f& box = placed[i].box;
     if (!is_finite(box.min) || !is_finite(box.max))
       throw Error(ErrorKind::input, fmt::format("{}: instance {} has a place that is not finite",
-                                                source, sources[i]));
+                                                source_name(scene), indices[i]));
     bvh.bounds.extendBy(box);
+    object_stack = std::max(object_stack, objects[scene.instances[indices[i]].mesh].stack);
   }
-  statistics.instances = placed.size();
   const Instance& first = scene.instances.front();
   bvh.has_top = scene.instances.size() > 1 || first.to_world != M44f() || first.light >= 0;
   TopLevel top;
@@ -270,7 +278,7 @@ LargeVector<BvhNode> place_instances(SceneBvh& bvh, const Scene& scene,
     bvh.root = offsets[first.mesh].node;
   }
   for (int axis = 0; axis < 3; ++axis) statistics.root_opacity[axis] = top.root_opacity[axis];
-  check_stack(top.stack + object_stack, source);
+  check_stack(top.stack + object_stack, source_name(scene));
   bvh.instances = std::move(top.instances);
   statistics.instance_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -287,15 +295,15 @@ void describe_objects(BvhStatistics& s, const std::vector<ObjectSummary>& object
   std::size_t largest = 0;
   for (const ObjectSummary& object : objects) {
     if (object.has_strands) {
-      s.segments += object.triangles;
+      s.segments += object.primitive_count;
     } else {
-      s.triangles += object.triangles;
+      s.triangles += object.primitive_count;
       s.opaque += object.opaque;
       s.cut_out += object.cut_out;
       s.translucent += object.translucent;
     }
-    if (object.triangles > largest) {
-      largest = object.triangles;
+    if (object.primitive_count > largest) {
+      largest = object.primitive_count;
       s.sah_cost = object.sah_cost;
     }
   }

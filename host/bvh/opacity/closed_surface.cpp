@@ -5,23 +5,20 @@
 #include <cmath>
 #include <cstdint>
 
-#include "bvh/opacity/connected_vertices.hpp"
+#include "bvh/opacity/disjoint_sets.hpp"
 
 namespace dapple {
 namespace {
-
-/// Maximum length of the sum of a closed surface's area vectors, relative to its area.
-constexpr double kOpenShare = 0.1;
 
 struct SurfaceSum {
   Imath::V3d vector{0, 0, 0};  ///< of area vectors
   double area = 0;
 
-  [[nodiscard]] bool is_closed() const { return vector.length() < kOpenShare * area; }
+  [[nodiscard]] bool is_closed() const { return vector.length() <= kOpenShare * area; }
 };
 
 /// Of each connected surface, by its root.
-std::vector<SurfaceSum> sums_of(const OpaqueTriangles& opaque, ConnectedVertices& surfaces) {
+std::vector<SurfaceSum> sums_of(const OpaqueTriangles& opaque, DisjointSets& surfaces) {
   std::vector<SurfaceSum> sums(opaque.positions().size());
   for (std::size_t t = 0; t < opaque.count(); ++t) {
     const Imath::V3d vector(opaque.area_vector(t));
@@ -62,8 +59,7 @@ struct SeamEdge {
 
 /// Edges of open surfaces whose ends are both at positions of several vertices.
 std::vector<SeamEdge> possible_seams(const OpaqueTriangles& opaque,
-                                     std::span<const std::uint32_t> welded,
-                                     ConnectedVertices& surfaces,
+                                     std::span<const std::uint32_t> welded, DisjointSets& surfaces,
                                      const std::vector<SurfaceSum>& sums) {
   std::vector<bool> is_shared(welded.size());
   bool any = false;
@@ -87,7 +83,7 @@ std::vector<SeamEdge> possible_seams(const OpaqueTriangles& opaque,
 /// Joins open surfaces along edges that two triangles have, by the positions of their ends. Leaves
 /// that touch at a point, or of which many share an edge, stay apart. False: none were joined.
 bool join_at_seams(const OpaqueTriangles& opaque, std::span<const std::uint32_t> welded,
-                   const std::vector<SurfaceSum>& sums, ConnectedVertices& surfaces) {
+                   const std::vector<SurfaceSum>& sums, DisjointSets& surfaces) {
   const std::vector<SeamEdge> edges = possible_seams(opaque, welded, surfaces, sums);
   EdgeTable table(edges.size());
   for (const SeamEdge& edge : edges) {
@@ -105,7 +101,7 @@ bool join_at_seams(const OpaqueTriangles& opaque, std::span<const std::uint32_t>
 
 std::vector<bool> closed_triangles(const OpaqueTriangles& opaque,
                                    std::span<const std::uint32_t> welded) {
-  ConnectedVertices surfaces = connect_triangles(
+  DisjointSets surfaces = connect_triangles(
       opaque.positions().size(), opaque.count(), [](std::size_t) { return true; },
       [&](std::size_t t, int k) { return opaque.vertex(t, k); });
   std::vector<SurfaceSum> sums = sums_of(opaque, surfaces);

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "bvh/opacity/connected_vertices.hpp"
+#include "bvh/opacity/disjoint_sets.hpp"
 
 namespace dapple {
 namespace {
@@ -111,7 +111,7 @@ template <class Belongs, class Vertex>
 std::vector<float> chords_of(const OpaqueTriangles& opaque, const std::vector<bool>& interior,
                              const std::vector<bool>& is_mixed, const Belongs& belongs,
                              const Vertex& vertex) {
-  ConnectedVertices surfaces =
+  DisjointSets surfaces =
       connect_triangles(opaque.positions().size(), interior.size(), belongs, vertex);
   std::vector<std::uint32_t> number(opaque.positions().size());  // by root; 0: none yet
   std::vector<SurfaceSums> sums(1);

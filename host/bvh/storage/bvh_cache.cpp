@@ -33,7 +33,7 @@ using BoxRecord = std::array<float, 6>;
 struct ObjectRecord {
   Checksum key;
   double build_seconds, sah_cost;
-  std::uint64_t triangles, opaque, cut_out, translucent;
+  std::uint64_t primitive_count, opaque, cut_out, translucent;
   BoxRecord box;
   std::array<BoxRecord, DAPPLE_BVH_WIDTH> parts;
   std::array<float, 3> axes;
@@ -56,7 +56,7 @@ ObjectRecord record_of(const CachedObject& cached, const Checksum& key) {
   record.key = key;
   record.build_seconds = cached.build_seconds;
   record.sah_cost = object.sah_cost;
-  record.triangles = object.triangles;
+  record.primitive_count = object.primitive_count;
   record.opaque = object.opaque;
   record.cut_out = object.cut_out;
   record.translucent = object.translucent;
@@ -76,7 +76,7 @@ ObjectRecord record_of(const CachedObject& cached, const Checksum& key) {
 ObjectSummary summary_of(const ObjectRecord& record) {
   ObjectSummary summary;
   summary.sah_cost = record.sah_cost;
-  summary.triangles = record.triangles;
+  summary.primitive_count = record.primitive_count;
   summary.opaque = record.opaque;
   summary.cut_out = record.cut_out;
   summary.translucent = record.translucent;

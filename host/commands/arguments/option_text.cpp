@@ -8,6 +8,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "commands/arguments/choice.hpp"
 #include "dapple/error.hpp"
 
 namespace dapple {
@@ -123,9 +124,8 @@ Shard parse_shard(const std::string& text) {
 }
 
 Estimator parse_estimator(const std::string& text) {
-  if (text == "exact") return Estimator::exact;
-  if (text == "prefiltered") return Estimator::prefiltered;
-  throw Error(ErrorKind::usage, fmt::format("--estimator {}: it is exact or prefiltered", text));
+  return parse_choice<Estimator>(
+      "--estimator", text, {{"exact", Estimator::exact}, {"prefiltered", Estimator::prefiltered}});
 }
 
 Cryptomattes parse_cryptomattes(const std::string& text) {
@@ -143,13 +143,12 @@ Cryptomattes parse_cryptomattes(const std::string& text) {
 }
 
 ExrCompression parse_compression(const std::string& text) {
-  if (text == "none") return ExrCompression::none;
-  if (text == "zips") return ExrCompression::zips;
-  if (text == "zip") return ExrCompression::zip;
-  if (text == "piz") return ExrCompression::piz;
-  if (text == "dwaa") return ExrCompression::dwaa;
-  throw Error(ErrorKind::usage,
-              fmt::format("--compression {}: it is zip, zips, piz, dwaa or none", text));
+  return parse_choice<ExrCompression>("--compression", text,
+                                      {{"zip", ExrCompression::zip},
+                                       {"zips", ExrCompression::zips},
+                                       {"piz", ExrCompression::piz},
+                                       {"dwaa", ExrCompression::dwaa},
+                                       {"none", ExrCompression::none}});
 }
 
 std::vector<std::string> parse_names(const std::string& flag, const std::string& text) {
@@ -195,45 +194,35 @@ PngOptions parse_png_options(const std::string& exposure, const std::string& bac
 }
 
 Normals parse_normals(const std::string& text) {
-  if (text == "shading") return Normals::shading;
-  if (text == "geometric") return Normals::geometric;
-  throw Error(ErrorKind::usage, fmt::format("--normals {}: it is shading or geometric", text));
+  return parse_choice<Normals>("--normals", text,
+                               {{"shading", Normals::shading}, {"geometric", Normals::geometric}});
 }
 
 Packets parse_packets(const std::string& text) {
-  if (text == "auto") return Packets::automatic;
-  if (text == "none") return Packets::none;
-  if (text == "pixel") return Packets::pixel;
-  if (text == "point") return Packets::point;
-  if (text == "scalar") return Packets::scalar;
-  throw Error(ErrorKind::usage,
-              fmt::format("--packets {}: it is auto, none, pixel, point or scalar", text));
+  return parse_choice<Packets>("--packets", text,
+                               {{"auto", Packets::automatic},
+                                {"none", Packets::none},
+                                {"pixel", Packets::pixel},
+                                {"point", Packets::point},
+                                {"scalar", Packets::scalar}});
 }
 
 void parse_passes(const std::string& text, RenderOptions& options) {
-  options.ao = options.light = options.albedo = options.beauty = false;
-  options.back = options.visits = options.motion = false;
+  static const std::vector<std::pair<const char*, bool RenderOptions::*>> kPasses = {
+      {"ao", &RenderOptions::ao},         {"light", &RenderOptions::light},
+      {"albedo", &RenderOptions::albedo}, {"beauty", &RenderOptions::beauty},
+      {"back", &RenderOptions::back},     {"motion", &RenderOptions::motion},
+      {"visits", &RenderOptions::visits}};
+  for (const auto& [name, is_on] : kPasses) options.*is_on = false;
   for (const std::string& pass : split(text, ',')) {
-    if (pass == "ao") {
-      options.ao = true;
-    } else if (pass == "light") {
-      options.light = true;
-    } else if (pass == "albedo") {
-      options.albedo = true;
-    } else if (pass == "beauty") {
-      options.beauty = true;
-    } else if (pass == "back") {
-      options.back = true;
-    } else if (pass == "visits") {
-      options.visits = true;
-    } else if (pass == "motion") {
-      options.motion = true;
-    } else {
+    const auto found = std::find_if(kPasses.begin(), kPasses.end(),
+                                    [&](const auto& known) { return pass == known.first; });
+    if (found == kPasses.end())
       throw Error(
           ErrorKind::usage,
           fmt::format("--passes {}: there are ao, light, albedo, beauty, back, motion and visits",
                       text));
-    }
+    options.*found->second = true;
   }
   if (options.back && !options.ao && !options.light)
     throw Error(

@@ -55,8 +55,10 @@ void add_ao_range_options(CLI::App& app, float& distance, float& falloff) {
       ->capture_default_str();
 }
 
-void add_rotation_option(CLI::App& app, const std::string& flag, double& degrees) {
-  app.add_option(flag, degrees, "Rotation of the dome about +Y, degrees, from +Z towards +X")
+void add_rotation_option(CLI::App& app, const std::string& flag, const char* what,
+                         double& degrees) {
+  app.add_option(flag, degrees,
+                 fmt::format("Rotation of the {} about +Y, degrees, from +Z towards +X", what))
       ->capture_default_str();
 }
 

@@ -2,26 +2,17 @@
 
 #include <fmt/format.h>
 
-#include <map>
 #include <set>
 #include <sstream>
 
 #include "commands/arguments/argument_errors.hpp"
+#include "commands/arguments/choice.hpp"
 #include "commands/arguments/option_text.hpp"
 #include "commands/arguments/shared_options.hpp"
 #include "dapple/error.hpp"
 
 namespace dapple {
 namespace {
-
-template <class T>
-T choice(const char* flag, const std::string& text, const std::map<std::string, T>& choices) {
-  const auto found = choices.find(text);
-  if (found != choices.end()) return found->second;
-  std::string known;
-  for (const auto& [name, value] : choices) known += (known.empty() ? "" : ", ") + name;
-  throw Error(ErrorKind::usage, fmt::format("{} is \"{}\"; it can be {}", flag, text, known));
-}
 
 void parse_bake_passes(const std::string& text, BakeOptions& options) {
   std::set<std::string> passes;
@@ -55,7 +46,7 @@ void add_value_options(CLI::App& app, BakeArguments& a) {
   app.add_option("--lights", a.lights, "JSON file of lights, in place of the scene's");
   app.add_option("--dome", a.dome,
                  "Environment map (.exr, .hdr) as a light, in addition to the others");
-  add_rotation_option(app, "--dome-rotation", a.dome_rotation);
+  add_rotation_option(app, "--dome-rotation", "dome", a.dome_rotation);
   add_light_radius_option(app, a.scene_options.light_radius);
   app.add_option(
          "--light-rays", o.light_rays,
@@ -178,7 +169,7 @@ void refuse_options_without_effect(const CLI::App& app, const BakeOptions& optio
   need(!options.texture, "--to vertex or instance", {"--channel"});
   need(options.vertices, "--to vertex", {"--bent-channel", "--blend", "--at"});
   need(!options.instances, "--to vertex or texture", {"--instances"});
-  need(options.placement != BakeInstances::alone, "--instances together or unique",
+  need(options.placement != BakePlacement::alone, "--instances together or unique",
        {"--occluders", "--ground"});
   need(options.texture, "--to texture", {"--size", "--bits", "--margin", "--uv"});
   need(options.bent, "--passes ao,bent", {"--bent-channel"});
@@ -190,24 +181,24 @@ void refuse_options_without_effect(const CLI::App& app, const BakeOptions& optio
 BakeOptions to_options(const BakeArguments& a) {
   BakeOptions o = a.options;
   enum class To { vertex, texture, instance };
-  const To to = choice<To>(
+  const To to = parse_choice<To>(
       "--to", a.to, {{"vertex", To::vertex}, {"texture", To::texture}, {"instance", To::instance}});
   o.vertices = to == To::vertex;
   o.texture = to == To::texture;
   o.instances = to == To::instance;
   parse_bake_passes(a.passes, o);
   dome_rotation("--dome-rotation", a.dome_rotation);
-  o.at_vertices = choice<bool>("--at", a.at, {{"triangles", false}, {"vertices", true}});
-  o.sides = choice<BakeSides>("--sides", a.sides,
-                              {{"auto", BakeSides::automatic},
-                               {"front", BakeSides::front},
-                               {"max", BakeSides::max},
-                               {"mean", BakeSides::mean}});
-  o.placement = choice<BakeInstances>("--instances", a.instances,
-                                      {{"together", BakeInstances::together},
-                                       {"unique", BakeInstances::together},
-                                       {"alone", BakeInstances::alone}});
-  choice<bool>("--blend", a.blend, {{"multiply", true}, {"replace", false}});
+  o.at_vertices = parse_choice<bool>("--at", a.at, {{"triangles", false}, {"vertices", true}});
+  o.sides = parse_choice<BakeSides>("--sides", a.sides,
+                                    {{"auto", BakeSides::automatic},
+                                     {"front", BakeSides::front},
+                                     {"max", BakeSides::max},
+                                     {"mean", BakeSides::mean}});
+  o.placement = parse_choice<BakePlacement>("--instances", a.instances,
+                                            {{"together", BakePlacement::together},
+                                             {"unique", BakePlacement::together},
+                                             {"alone", BakePlacement::alone}});
+  parse_choice<bool>("--blend", a.blend, {{"multiply", true}, {"replace", false}});
   if (a.rays) o.rays = *a.rays;
   if (a.rays) o.target_error = 0;
   if (a.target_error) o.target_error = *a.target_error;
@@ -218,9 +209,9 @@ BakeOptions to_options(const BakeArguments& a) {
   if (o.instances && o.bent)
     throw Error(ErrorKind::usage,
                 "--passes bent needs --to vertex or texture: an instance has one AO value");
-  choice<bool>("--uv", a.uv, {{"auto", false}, {"own", true}});
+  parse_choice<bool>("--uv", a.uv, {{"auto", false}, {"own", true}});
   channel_of(a);
-  choice<bool>("--bent-channel", a.bent_channel, {{"_BENT_NORMAL", false}, {"NORMAL", true}});
+  parse_choice<bool>("--bent-channel", a.bent_channel, {{"_BENT_NORMAL", false}, {"NORMAL", true}});
   validate(o);
   return o;
 }

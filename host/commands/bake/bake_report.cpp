@@ -85,8 +85,8 @@ void write_statistics(const BakeResult& result, const BakeSeconds& seconds,
       {"bias", bias_json(s.bias)},
       {"footprint", s.footprint},
       {"inside_samples", s.inside_samples},
-      {"hidden_vertices", s.hidden_vertices},
-      {"hidden_texels", s.hidden_texels},
+      {"enclosed_vertices", s.enclosed_vertices},
+      {"enclosed_texels", s.enclosed_texels},
       {"dark_vertices", s.dark_vertices},
       {"dark_texels", s.dark_texels},
       {"device", s.device},
@@ -102,10 +102,11 @@ void write_statistics(const BakeResult& result, const BakeSeconds& seconds,
 void print_summary(const BakeStatistics& s, const BakeSeconds& seconds, const std::string& output) {
   for (const std::string& note : s.notes) tell("note: {}\n", note);
   put("{} triangles, {}, {} rays from {} points ({:.1f} million rays per second)\n"
-      "load {:.2f}, prepare {:.2f}, build {:.2f}, trace {:.2f}, write {:.2f}, total {:.2f} s\n",
+      "seconds: load {:.2f}, prepare {:.2f}, build {:.2f}, upload {:.2f}, kernel build {:.2f}, "
+      "trace {:.2f}, write {:.2f}, total {:.2f}\n",
       s.triangles, values_text(s), s.rays, s.points,
       s.seconds.trace > 0 ? static_cast<double>(s.rays) / s.seconds.trace * 1e-6 : 0.0,
-      seconds.load, s.seconds.prepare + s.seconds.upload + s.seconds.kernel_build, s.seconds.build,
+      seconds.load, s.seconds.prepare, s.seconds.build, s.seconds.upload, s.seconds.kernel_build,
       s.seconds.trace, seconds.write, seconds.total);
   if (s.sampled_values > 0)
     put("standard error of an AO value {:.3f}{} (root mean square)\n",
@@ -116,11 +117,11 @@ void print_summary(const BakeStatistics& s, const BakeSeconds& seconds, const st
   put("{}", bias_lines(s.bias));
   if (s.inside_samples > 0)
     put("{} samples lie inside closed geometry and do not count\n", s.inside_samples);
-  if (s.hidden_vertices > 0)
+  if (s.enclosed_vertices > 0)
     put("{} vertices lie inside closed geometry and have their neighbours' values\n",
-        s.hidden_vertices);
-  if (s.hidden_texels > 0)
-    put("{} texels lie inside closed geometry and have the nearest value\n", s.hidden_texels);
+        s.enclosed_vertices);
+  if (s.enclosed_texels > 0)
+    put("{} texels lie inside closed geometry and have the nearest value\n", s.enclosed_texels);
   const std::size_t dark = s.dark_vertices + s.dark_texels, values = s.vertices + s.texels;
   if (static_cast<double>(dark) > kNotedDark * static_cast<double>(values))
     put("{} of {} {} see nothing: AO below 0.001. In closed rooms --ao-distance limits what "

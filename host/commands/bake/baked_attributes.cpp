@@ -9,6 +9,7 @@
 #include <set>
 
 #include "bake/samples/surface_samples.hpp"
+#include "commands/bake/file_values.hpp"
 #include "dapple/error.hpp"
 #include "film/light_layers.hpp"
 #include "scene/check/invertible.hpp"
@@ -18,9 +19,6 @@ namespace {
 
 using gltf::NewAttribute;
 using gltf::SourceFile;
-
-/// A primitive of the file, by its mesh and its number there.
-using Primitive = std::pair<std::uint32_t, std::uint32_t>;
 
 /// Scales that differ by less are one scale and its rounding.
 constexpr float kEqualScales = 1e-4f;
@@ -79,98 +77,16 @@ std::vector<bool> mirrored_skins(const SourceFile& file, const Scene& scene) {
   return mirrored;
 }
 
-/// Sums over the meshes of a scene that show the same vertices of the file: poses and placements.
-struct VertexSums {
-  std::vector<float> ao, weight;
-  std::vector<V3f> bent;
-  std::vector<std::vector<V3f>> light;  ///< by light
-  std::vector<std::uint32_t> owner;     ///< 1 + the mesh of the file that uses a vertex, or 0
-
-  VertexSums(std::size_t count, const BakedMesh& like)
-      : ao(count), weight(count), light(like.light.size()), owner(count) {
-    if (!like.bent.empty()) bent.resize(count, V3f(0));
-    for (std::vector<V3f>& one : light) one.resize(count, V3f(0));
-  }
-
-  /// Whether no other mesh of the file uses the vertices.
-  [[nodiscard]] bool are_free(const VertexSource& source) const {
-    for (std::uint32_t i = 0; i < source.count; ++i) {
-      const std::uint32_t by = owner[vertex_of(source, i)];
-      if (by != 0 && by != source.mesh + 1) return false;
-    }
-    return true;
-  }
-
-  void add(const VertexSource& source, const BakedMesh& baked) {
-    for (std::uint32_t i = 0; i < source.count; ++i) {
-      const std::uint32_t to = vertex_of(source, i), from = source.first + i;
-      owner[to] = source.mesh + 1;
-      ao[to] += baked.ao[from];
-      weight[to] += 1;
-      if (!baked.bent.empty()) bent[to] += baked.bent[from];
-      for (std::size_t l = 0; l < baked.light.size(); ++l) light[l][to] += baked.light[l][from];
-    }
-  }
-
-  /// AO becomes means, and 1 where there is none.
-  void divide() {
-    for (std::size_t v = 0; v < ao.size(); ++v) ao[v] = weight[v] > 0 ? ao[v] / weight[v] : 1.0f;
-  }
-
- private:
-  static std::uint32_t vertex_of(const VertexSource& source, std::uint32_t i) {
-    return source.used.empty() ? i : source.used[i];
-  }
-};
-
-/// The sums of all primitives of a file. Primitives may share their vertices. Meshes that use
-/// different ones of these share a set of sums; those that use the same have sets of their own.
-struct FileSums {
-  std::map<gltf::VertexKey, std::vector<VertexSums>> sets;
-  std::map<Primitive, std::pair<gltf::VertexKey, std::uint32_t>> primitives;  ///< and their sets
-
-  FileSums(const SourceFile& file, const Scene& scene, const std::vector<BakedMesh>& meshes,
-           const std::string& attribute) {
-    using Use = std::pair<const VertexSource*, const BakedMesh*>;
-    std::map<std::pair<gltf::VertexKey, std::uint32_t>, std::vector<Use>> uses;  // by mesh of file
-    for (std::size_t m = 0; m < meshes.size(); ++m) {
-      if (meshes[m].ao.empty()) continue;
-      for (const VertexSource& source : scene.meshes[m].sources) {
-        const auto key = file.vertex_key(source.mesh, source.primitive, attribute);
-        uses[{key, source.mesh}].emplace_back(&source, &meshes[m]);
-      }
-    }
-    for (const auto& [by, of_mesh] : uses) {
-      std::vector<VertexSums>& all = sets[by.first];
-      const auto are_free = [&](const VertexSums& set) {
-        return std::all_of(of_mesh.begin(), of_mesh.end(),
-                           [&](const Use& use) { return set.are_free(*use.first); });
-      };
-      const auto set =
-          static_cast<std::uint32_t>(std::find_if(all.begin(), all.end(), are_free) - all.begin());
-      const VertexSource& first = *of_mesh.front().first;
-      if (set == all.size())
-        all.emplace_back(file.vertex_count(first.mesh, first.primitive), *of_mesh.front().second);
-      for (const auto& [source, baked] : of_mesh) {
-        all[set].add(*source, *baked);
-        primitives[{source->mesh, source->primitive}] = {by.first, set};
-      }
-    }
-    for (auto& [key, all] : sets)
-      for (VertexSums& set : all) set.divide();
-  }
-};
-
-NewAttribute color_attribute(gltf::PrimitiveColors colors, const VertexSums& sums,
+NewAttribute color_attribute(gltf::PrimitiveColors colors, const VertexValues& baked,
                              const BakeChannel& channel, bool multiply) {
   NewAttribute attribute;
   attribute.components = colors.components == 4 || channel.components == "a" ? 4 : 3;
-  if (colors.values.empty()) colors.values.assign(4 * sums.ao.size(), 1.0f);
-  for (std::size_t v = 0; v < sums.ao.size(); ++v) {
+  if (colors.values.empty()) colors.values.assign(4 * baked.ao.size(), 1.0f);
+  for (std::size_t v = 0; v < baked.ao.size(); ++v) {
     for (const char component : channel.components) {
       const std::size_t c = component == 'r' ? 0 : component == 'g' ? 1 : component == 'b' ? 2 : 3;
       float& value = colors.values[4 * v + c];
-      value = multiply ? value * sums.ao[v] : sums.ao[v];
+      value = multiply ? value * baked.ao[v] : baked.ao[v];
     }
     for (std::size_t c = 0; c < attribute.components; ++c)
       attribute.values.push_back(colors.values[4 * v + c]);
@@ -183,23 +99,23 @@ NewAttribute color_attribute(gltf::PrimitiveColors colors, const VertexSums& sum
 }
 
 /// AO in one component of texture coordinates; the other one stays, or is 0.
-NewAttribute uv_attribute(std::vector<V2f> uvs, const VertexSums& sums,
+NewAttribute uv_attribute(std::vector<V2f> uvs, const VertexValues& baked,
                           const BakeChannel& channel) {
-  uvs.resize(sums.ao.size(), V2f(0, 0));
+  uvs.resize(baked.ao.size(), V2f(0, 0));
   NewAttribute attribute;
   attribute.components = 2;
   for (std::size_t v = 0; v < uvs.size(); ++v) {
-    uvs[v][channel.components == "x" ? 0 : 1] = sums.ao[v];
+    uvs[v][channel.components == "x" ? 0 : 1] = baked.ao[v];
     attribute.values.insert(attribute.values.end(), {uvs[v].x, uvs[v].y});
   }
   return attribute;
 }
 
-NewAttribute bent_attribute(const VertexSums& sums, const std::string& name) {
+NewAttribute bent_attribute(const VertexValues& baked, const std::string& name) {
   NewAttribute attribute;
   attribute.name = name;
   attribute.components = 3;
-  for (const V3f& bent : sums.bent) {
+  for (const V3f& bent : baked.bent) {
     // Of vertices that no triangle uses, or that see nothing: glTF wants unit vectors.
     const V3f unit = bent.length2() > 0 ? bent.normalized() : V3f(0, 1, 0);
     attribute.values.insert(attribute.values.end(), {unit.x, unit.y, unit.z});
@@ -207,27 +123,28 @@ NewAttribute bent_attribute(const VertexSums& sums, const std::string& name) {
   return attribute;
 }
 
-NewAttribute light_attribute(const VertexSums& sums, std::size_t light, const std::string& name) {
+NewAttribute light_attribute(const VertexValues& baked, std::size_t light,
+                             const std::string& name) {
   NewAttribute attribute;
   attribute.name = name;
   attribute.components = 3;
-  for (std::size_t v = 0; v < sums.weight.size(); ++v) {
-    const V3f value = sums.light[light][v] / std::max(1.0f, sums.weight[v]);
+  for (std::size_t v = 0; v < baked.ao.size(); ++v) {
+    const V3f& value = baked.light[light][v];
     attribute.values.insert(attribute.values.end(), {value.x, value.y, value.z});
   }
   return attribute;
 }
 
-NewAttribute ao_attribute(const SourceFile& file, const Primitive& at, const VertexSums& sums,
-                          const BakeTargets& targets) {
+NewAttribute ao_attribute(const SourceFile& file, const FilePrimitive& at,
+                          const VertexValues& baked, const BakeTargets& targets) {
   const BakeChannel& channel = targets.channel;
   NewAttribute attribute;
   if (const auto set = uv_set_of(channel.attribute)) {
-    attribute = uv_attribute(file.uvs(at.first, at.second, *set), sums, channel);
+    attribute = uv_attribute(file.uvs(at.first, at.second, *set), baked, channel);
   } else if (channel.attribute == "COLOR_0") {
-    attribute = color_attribute(file.colors(at.first, at.second), sums, channel, targets.multiply);
+    attribute = color_attribute(file.colors(at.first, at.second), baked, channel, targets.multiply);
   } else {
-    attribute.values = sums.ao;
+    attribute.values = baked.ao;
   }
   attribute.name = channel.attribute;
   return attribute;
@@ -295,23 +212,28 @@ std::vector<NewAttribute> baked_attributes(const SourceFile& file, const Scene& 
     if (to_normal) turned[m] = as_normals(scene.meshes[m], turned[m], metric_of(scene, m));
     for (V3f& bent : turned[m].bent) bent.x = mirrored[m] ? -bent.x : bent.x;
   }
-  const FileSums sums(file, scene, turned.empty() ? result.meshes : turned, channel.attribute);
+  const FileValues values =
+      file_values(file, scene, turned.empty() ? result.meshes : turned, channel.attribute);
+  std::map<FileValues::SetIndex, std::vector<FilePrimitive>> users;
+  for (const auto& [primitive, set] : values.primitives) users[set].push_back(primitive);
   std::vector<NewAttribute> attributes;
-  std::map<std::pair<gltf::VertexKey, std::uint32_t>, std::size_t> numbers;
-  for (const auto& [primitive, from] : sums.primitives) {
-    const std::size_t shared = numbers.try_emplace(from, numbers.size()).first->second;
-    const auto& [key, set] = from;
-    const VertexSums& of = sums.sets.at(key)[set];
+  std::size_t shared = 0;
+  for (const auto& [set, primitives] : users) {
+    const VertexValues& baked = values.sets.at(set.first)[set.second];
     const auto push = [&](NewAttribute attribute) {
-      attribute.mesh = primitive.first;
-      attribute.primitive = primitive.second;
       attribute.shared = shared;
-      attributes.push_back(std::move(attribute));
+      for (const auto& [mesh, number] : primitives) {
+        attribute.mesh = mesh;
+        attribute.primitive = number;
+        attributes.push_back(attribute);
+        attribute.values.clear();  // the first one's are stored for all
+      }
     };
-    push(ao_attribute(file, primitive, of, targets));
-    if (!of.bent.empty()) push(bent_attribute(of, targets.bent_channel));
-    for (std::size_t l = 0; l < of.light.size(); ++l)
-      push(light_attribute(of, l, light_attribute_name(result.light_names[l])));
+    push(ao_attribute(file, primitives.front(), baked, targets));
+    if (!baked.bent.empty()) push(bent_attribute(baked, targets.bent_channel));
+    for (std::size_t l = 0; l < baked.light.size(); ++l)
+      push(light_attribute(baked, l, light_attribute_name(result.light_names[l])));
+    ++shared;
   }
   return attributes;
 }

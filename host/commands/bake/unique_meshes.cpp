@@ -14,12 +14,18 @@ class PlacementNodes {
  public:
   explicit PlacementNodes(gltf::SourceFile& file) : file_(file) {}
 
+  /// Whether the instances of a node stay together: nodes of a skin have no places of their own.
+  [[nodiscard]] bool keeps_instances(int node) const {
+    const auto in_file = static_cast<std::uint32_t>(node);
+    return file_.has_gpu_instances(in_file) && file_.has_skin(in_file);
+  }
+
   /// Of the next placement of `mesh`, of the scene, by a node of the file; -1 if it has none.
   int next(int node, std::uint32_t mesh) {
     auto split = split_.find(node);
     if (split == split_.end()) {
       const auto in_file = static_cast<std::uint32_t>(node);
-      if (!file_.has_gpu_instances(in_file)) return node;
+      if (!file_.has_gpu_instances(in_file) || keeps_instances(node)) return node;
       if (file_.has_instance_features(in_file)) ++without_features_;
       split = split_.emplace(node, file_.split_gpu_instances(in_file)).first;
     }
@@ -54,11 +60,18 @@ void make_meshes_unique(gltf::SourceFile& file, Scene& scene) {
   std::map<std::uint32_t, std::uint32_t> owner;  // the first node that shows a mesh of the file
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> copies;  // by node and mesh
   std::vector<bool> shown(scene.meshes.size());
+  std::map<std::pair<int, std::uint32_t>, std::uint32_t> kept;  // meshes of instances that stay
   PlacementNodes nodes(file);
   for (Instance& instance : scene.instances) {
     const std::uint32_t mesh = instance.mesh;
     if (scene.meshes[mesh].sources.empty() || instance.node < 0) continue;
+    const auto together = kept.find({instance.node, mesh});
+    if (together != kept.end()) {
+      instance.mesh = together->second;
+      continue;
+    }
     const std::uint32_t in_file = scene.meshes[mesh].sources[0].mesh;
+    const bool stays = nodes.keeps_instances(instance.node);
     const int placed = nodes.next(instance.node, mesh);
     instance.node = placed < 0 ? kLeftOut : placed;
     if (placed < 0) continue;
@@ -66,16 +79,22 @@ void make_meshes_unique(gltf::SourceFile& file, Scene& scene) {
     const bool is_first = owner.try_emplace(in_file, node).first->second == node;
     if (is_first && !shown[mesh]) {
       shown[mesh] = true;
-      continue;
+    } else {
+      auto copy = copies.find({node, in_file});
+      if (copy == copies.end())
+        copy = copies.emplace(std::pair{node, in_file}, file.copy_mesh(node, in_file)).first;
+      instance.mesh = static_cast<std::uint32_t>(scene.meshes.size());
+      scene.meshes.push_back(Mesh(scene.meshes[mesh]));
+      for (VertexSource& source : scene.meshes.back().sources) source.mesh = copy->second;
     }
-    auto copy = copies.find({node, in_file});
-    if (copy == copies.end())
-      copy = copies.emplace(std::pair{node, in_file}, file.copy_mesh(node, in_file)).first;
-    instance.mesh = static_cast<std::uint32_t>(scene.meshes.size());
-    scene.meshes.push_back(Mesh(scene.meshes[mesh]));
-    for (VertexSource& source : scene.meshes.back().sources) source.mesh = copy->second;
+    if (stays) kept[{placed, mesh}] = instance.mesh;
   }
   remove_left_out(scene);
+  if (!kept.empty())
+    scene.warnings.push_back(fmt::format(
+        "{}: skinned meshes with EXT_mesh_gpu_instancing keep it: a skin's nodes have no places, "
+        "so the instances of each share their values ({} of them)",
+        scene.source, kept.size()));
   if (nodes.without_features() > 0)
     scene.warnings.push_back(fmt::format(
         "{}: EXT_instance_features of instances that became nodes is left out ({} of them)",

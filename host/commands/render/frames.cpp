@@ -106,7 +106,7 @@ std::vector<Frame> list_frames(const RenderArguments& a) {
     Frame frame = numbered(typed, number);
     frame.number = number;
     frame.seconds = static_cast<double>(number) / frames_per_second(a);
-    frame.title = fmt::format("frame {} of {}", frames.size() + 1, range.count());
+    frame.title = fmt::format("frame {} ({} of {})", number, frames.size() + 1, range.count());
     frames.push_back(std::move(frame));
   }
   return frames;

@@ -5,7 +5,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -27,15 +26,10 @@
 #include "film/exr/exr_output.hpp"
 #include "film/exr/exr_parts.hpp"
 #include "film/preview/tone_map.hpp"
+#include "render/stopwatch.hpp"
 
 namespace dapple {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// The checkpoint that the render goes on from, if there is one.
 std::string resumed_file(const RenderArguments& a) {
@@ -51,18 +45,34 @@ RenderControl to_control(const RenderArguments& a, ProgressBar& progress) {
   return control;
 }
 
-/// Whether the checkpoint does not fit, and the render may begin anew. Says so, and moves a
-/// checkpoint aside that the render's own would replace.
-bool begins_anew(const Error& error, const RenderArguments& a) {
-  if (a.resume_or_begin.empty() || !std::string_view(error.what()).starts_with("--resume "))
-    return false;
-  const std::string aside = a.resume_or_begin + ".unfit";
-  std::error_code failure;
-  if (a.checkpoint == a.resume_or_begin) std::filesystem::rename(a.checkpoint, aside, failure);
-  const bool is_kept = a.checkpoint == a.resume_or_begin && !failure;
-  tell("note: begins anew{}, since {}\n", is_kept ? ", keeps the checkpoint as " + aside : "",
-       error.what());
-  return true;
+/// Whether the checkpoint does not fit, and the render may begin anew.
+bool may_begin_anew(const Error& error, const RenderArguments& a) {
+  return !a.resume_or_begin.empty() && std::string_view(error.what()).starts_with("--resume ");
+}
+
+/// `file`.unfit, with a number if there is such a file.
+std::string name_aside(const std::string& file) {
+  std::string name = file + ".unfit";
+  for (int number = 2; std::filesystem::exists(std::filesystem::symlink_status(name)); ++number)
+    name = fmt::format("{}.unfit_{}", file, number);
+  return name;
+}
+
+/// Says that the render begins anew, and moves a checkpoint aside that its own would replace.
+void set_checkpoint_aside(const Error& error, const RenderArguments& a) {
+  std::string kept;
+  if (!a.checkpoint.empty() && std::filesystem::exists(a.checkpoint) &&
+      std::filesystem::equivalent(a.checkpoint, a.resume_or_begin)) {
+    const std::string aside = name_aside(a.resume_or_begin);
+    std::error_code failure;
+    std::filesystem::rename(a.checkpoint, aside, failure);
+    if (failure)
+      throw Error(ErrorKind::failed,
+                  fmt::format("--resume-or-begin {}: does not fit, and cannot be moved to {}: {}",
+                              a.resume_or_begin, aside, failure.message()));
+    kept = ", keeps the checkpoint as " + aside;
+  }
+  tell("note: begins anew{}, since {}\n", kept, error.what());
 }
 
 /// Notes of the result also tell names of layers that are not there.
@@ -168,12 +178,20 @@ bool has_positive(const Plane& plane) {
   return std::any_of(plane.pixels.begin(), plane.pixels.end(), [](float v) { return v > 0; });
 }
 
+/// Whether a layer is of the other sides of surfaces: that of their fronts is there, too. A light
+/// may be named "back".
+bool is_of_backs(const Film& film, const std::string& layer) {
+  constexpr std::string_view kBack = ".back";
+  return layer.ends_with(kBack) &&
+         film.find(layer.substr(0, layer.size() - kBack.size()) + ".R") != nullptr;
+}
+
 /// Whether something is seen, and lit by a light from the front, if there are lights.
 bool is_lit(const Film& film) {
   if (!has_positive(*film.find("A"))) return false;
   bool has_lights = false;
   for (const Plane& plane : film.planes) {
-    if (!plane.channel.starts_with("light.") || plane.channel.find(".back.") != std::string::npos)
+    if (!plane.channel.starts_with("light.") || is_of_backs(film, layer_of(plane.channel)))
       continue;
     if (has_positive(plane)) return true;
     has_lights = true;
@@ -203,73 +221,98 @@ std::vector<std::pair<std::string, std::string>> settings_of(const Shot& shot, c
   return settings;
 }
 
-void run_render(const RenderArguments& a) {
-  RenderOptions options = to_options(a);
-  const ExrFormat format = to_format(a);
-  const std::vector<Frame> frames = list_frames(a);
-  ProgressBar progress(a.quiet, "rendering");
-  RenderControl control = to_control(a, progress);
-  check_files(frames, a);
-  if (!options.cache.empty()) prepare_bvh_cache(options.cache);
-  catch_interruptions();
-  use_exr_threads(static_cast<int>(std::thread::hardware_concurrency()));
+/// The parts of a command that its frames share.
+class RenderRun {
+ public:
+  explicit RenderRun(const RenderArguments& a)
+      : a_(a),
+        options_(to_options(a)),
+        format_(to_format(a)),
+        png_(parse_png_options(a.exposure, a.background)),
+        progress_(a.quiet, "rendering"),
+        control_(to_control(a, progress_)) {}
 
-  auto start = Clock::now();
-  Renderer renderer;
-  renderer.prepare(options);
-  progress.announce("reading", a.dome.empty() ? a.scene : a.dome);
-  Shot shot(a, options);
-  progress.announce("reading", a.scene);
-  NotePrinter notes;
-  PngOptions png = parse_png_options(a.exposure, a.background);
-  for (const Frame& frame : frames) {
-    progress.begin(frame.title);
-    Scene scene = shot.frame(first_seconds(a, frame));
-    if (&frame == &frames.front()) {
-      check_files_spare(frames, a, scene.files);
-      progress.announce("building", "the BVH");
+  void run() {
+    const std::vector<Frame> frames = list_frames(a_);
+    check_files(frames, a_);
+    if (!options_.cache.empty()) prepare_bvh_cache(options_.cache);
+    catch_interruptions();
+    use_exr_threads(static_cast<int>(std::thread::hardware_concurrency()));
+
+    Stopwatch total;
+    renderer_.prepare(options_);
+    progress_.announce("reading", a_.dome.empty() ? a_.scene : a_.dome);
+    Shot shot(a_, options_);
+    progress_.announce("reading", a_.scene);
+    for (const Frame& frame : frames) {
+      progress_.begin(frame.title);
+      Scene scene = shot.frame(first_seconds(a_, frame));
+      if (&frame == &frames.front()) {
+        check_files_spare(frames, a_, scene.files);
+        progress_.announce("building", "the BVH");
+      }
+      const double load_seconds = total.seconds();
+      RenderResult result = trace(frame, shot, std::move(scene));
+      result.statistics.seconds.load = load_seconds;
+      if (!write(frame, result, total)) break;
+      total = Stopwatch();
     }
-    const double load_seconds = since(start);
-    control.part = is_part_path(frame.output) ? frame.output : "";
-    control.settings = settings_of(shot, frame);
-    if (a.animate_seed) options.seed = a.options.seed + static_cast<std::uint32_t>(frame.number);
+  }
+
+ private:
+  RenderResult trace(const Frame& frame, Shot& shot, Scene scene) {
+    control_.part = is_part_path(frame.output) ? frame.output : "";
+    control_.settings = settings_of(shot, frame);
+    if (a_.animate_seed) options_.seed = a_.options.seed + static_cast<std::uint32_t>(frame.number);
     RenderResult result;
     try {
-      result = render_frame(a, frame, shot, std::move(scene), renderer, options, control);
+      result = render_frame(a_, frame, shot, std::move(scene), renderer_, options_, control_);
     } catch (const Error& error) {
-      if (!begins_anew(error, a)) throw;
-      control.resume.clear();
-      result = render_frame(a, frame, shot, shot.frame(first_seconds(a, frame)), renderer, options,
-                            control);
+      if (!may_begin_anew(error, a_)) throw;
+      set_checkpoint_aside(error, a_);
+      control_.resume.clear();
+      result = render_frame(a_, frame, shot, shot.frame(first_seconds(a_, frame)), renderer_,
+                            options_, control_);
     }
     slices_are_traced();
-    progress.clear();
-    RenderStatistics& statistics = result.statistics;
-    statistics.seconds.load = load_seconds;
-    // Interrupted before this frame began: the previous frame was the last.
-    if (result.interrupted && !frame.title.empty() && statistics.rays.camera == 0) break;
+    progress_.clear();
+    return result;
+  }
 
+  /// `total`: since the frame began. False: interrupted, no frames follow.
+  bool write(const Frame& frame, RenderResult& result, const Stopwatch& total) {
+    RenderStatistics& statistics = result.statistics;
+    // Interrupted before this frame began: the previous frame was the last.
+    if (result.interrupted && !frame.title.empty() && statistics.rays.camera == 0) return false;
     if (result.film.planes.empty()) {
-      report_saved(statistics, frame, since(start));
-      if (!a.quiet) notes.print(statistics.notes);
-      break;
+      report_saved(statistics, frame, total.seconds());
+      if (!a_.quiet) notes_.print(statistics.notes);
+      return false;
     }
-    const auto writing = Clock::now();
-    keep_choices(result, !a.dome.empty(), !frame.png.empty(), options, png);
-    write_pictures(result, frame, format, png);
-    statistics.seconds.write = since(writing);
-    statistics.seconds.total = since(start);
+    const Stopwatch writing;
+    keep_choices(result, !a_.dome.empty(), !frame.png.empty(), options_, png_);
+    write_pictures(result, frame, format_, png_);
+    statistics.seconds.write = writing.seconds();
+    statistics.seconds.total = total.seconds();
     if (!frame.stats_json.empty()) write_statistics(statistics, frame.stats_json);
     if (!result.checkpoint_failure.empty())
       throw Error(ErrorKind::failed, result.checkpoint_failure + "; the image is written");
-    if (!a.quiet) {
-      notes.print(statistics.notes);
-      print_summary(statistics, frame, png.exposure, result.interrupted);
+    if (!a_.quiet) {
+      notes_.print(statistics.notes);
+      print_summary(statistics, frame, png_.exposure, result.interrupted);
     }
-    if (result.interrupted || interruption_code() != 0) break;
-    start = Clock::now();
+    return !result.interrupted && interruption_code() == 0;
   }
-}
+
+  const RenderArguments& a_;
+  RenderOptions options_;
+  const ExrFormat format_;
+  PngOptions png_;
+  ProgressBar progress_;
+  RenderControl control_;
+  Renderer renderer_;
+  NotePrinter notes_;
+};
 
 }  // namespace
 
@@ -287,7 +330,7 @@ Run add_render_command(CLI::App& app) {
       "Ng; P; Z; "
       "motion; "
       "crypto_object, crypto_material; samples; error; visits. Where rays miss, ao is 1.");
-  return [a] { run_render(*a); };
+  return [a] { RenderRun(*a).run(); };
 }
 
 }  // namespace dapple

@@ -49,10 +49,11 @@ void add_sampling_options(CLI::App& app, RenderArguments& a) {
       ->capture_default_str();
   add_prefiltering_options(app, a.estimator, o.footprint, a.report_bias)
       ->each([&a](const std::string&) { a.footprint_given = true; });
-  app.add_option("--roulette", o.roulette,
-                 "With --estimator exact: rays of less transmittance than this end at random, and "
-                 "the others count for them: the same mean, sooner, with a little more noise; 0: "
-                 "none ends")
+  app.add_option(
+         "--roulette", o.roulette,
+         "With --estimator exact: rays of less transmittance than this end at random, and "
+         "the others count for them: the same mean, sooner, with a little more noise; below 1; "
+         "0: none ends")
       ->check(of_values("0..1"))
       ->capture_default_str();
   app.add_option(
@@ -137,7 +138,7 @@ void add_scene_options(CLI::App& app, RenderArguments& a) {
       "--dome", a.dome,
       "Latitude-longitude image, OpenEXR or Radiance HDR, that lights the scene from all "
       "around, in addition to the other lights");
-  add_rotation_option(app, "--dome-rotation", a.dome_rotation);
+  add_rotation_option(app, "--dome-rotation", "dome", a.dome_rotation);
   add_light_radius_option(app, a.scene_options.light_radius);
   app.add_option("--line-radius", a.scene_options.line_radius,
                  "Turn a glTF file's lines into strands of this radius, metres; 0: ignore them")

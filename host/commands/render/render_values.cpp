@@ -90,9 +90,13 @@ void check_effects(const RenderArguments& a, const RenderOptions& o) {
   need(is_adaptive(o), "--target-rmse and --target-error", o.ao || o.light, "the pass ao or light");
   need(o.ao_rays != defaults.ao_rays, "--ao-rays", o.ao, "the pass ao");
   need(o.light_rays != defaults.light_rays, "--light-rays", o.light, "the pass light");
+  need(!a.lights.empty(), "--lights", o.light || o.beauty, "the pass light or beauty");
+  need(!a.dome.empty(), "--dome", o.light || o.beauty, "the pass light or beauty");
   need(o.ao_distance > 0, "--ao-distance", o.ao, "the pass ao");
   need(o.roulette != defaults.roulette, "--roulette", o.estimator == Estimator::exact,
        "--estimator exact");
+  need(o.footprint != defaults.footprint, "--footprint", o.estimator == Estimator::prefiltered,
+       "--estimator prefiltered");
   need(o.max_spp != defaults.max_spp, "--max-spp", is_adaptive(o),
        "--target-rmse or --target-error");
   need(a.animate_seed, "--animate-seed", !a.frames.empty(), "--frames");

@@ -23,15 +23,20 @@ struct WeightedTexel {
   float weight;
 };
 
-/// How much a texel counts. A little weight stays where it is not seen, for texels among which
-/// there is no other.
+/// How much a texel counts; 0: it is not seen.
 float weight_of(const ColorTexture& texture, const TexelWeights& weights, std::size_t i) {
-  constexpr float kUnseen = 1e-4f;
-  if (texture.alpha.empty() || weights.least == TexelWeights::kEqual) return 1;
+  if (texture.alpha.empty() || weights.kind == TexelWeights::Kind::equal) return 1;
   const std::uint8_t alpha = texture.alpha[i];
-  if (weights.least == TexelWeights::kByAlpha)
-    return std::max(kUnseen, static_cast<float>(alpha) / 255);
-  return alpha >= weights.least ? 1 : kUnseen;
+  if (weights.kind == TexelWeights::Kind::by_alpha) return static_cast<float>(alpha) / 255;
+  return alpha >= weights.least_seen ? 1 : 0;
+}
+
+/// The texel of `coarse` that covers texel i of a level of this size.
+std::size_t covering(const ColorLevel& coarse, std::uint32_t width, std::uint32_t height,
+                     std::size_t i) {
+  const std::uint64_t x = i % width * coarse.width / width;
+  const std::uint64_t y = i / width * coarse.height / height;
+  return y * coarse.width + x;
 }
 
 WeightedTexel texel_of(const ColorTexture& texture, const TexelWeights& weights, std::size_t i) {
@@ -103,28 +108,48 @@ const std::array<float, 256>& linear_of_codes() {
 
 TexelWeights texel_weights(const Material& material) {
   if (material.alpha_mode == AlphaMode::opaque || material.alpha_texture < 0) return {};
-  if (material.alpha_mode == AlphaMode::blend) return {TexelWeights::kByAlpha};
+  if (material.alpha_mode == AlphaMode::blend) return {TexelWeights::Kind::by_alpha, 0};
   int least = 0;
   while (least < 256 && material.alpha * (static_cast<float>(least) / 255) < material.alpha_cutoff)
     ++least;
-  return {least};
+  return {TexelWeights::Kind::cut_out, least};
 }
 
 std::vector<ColorLevel> color_mip_levels(const ColorTexture& texture, const TexelWeights& weights) {
-  std::vector<ColorLevel> levels;
-  WeightedLevel level{texture.width, texture.height, {}, {}};
-  while (level.width > 1 || level.height > 1) {
-    level = levels.empty() ? coarser(level.width, level.height,
-                                     [&](std::size_t i) { return texel_of(texture, weights, i); })
-                           : coarser(level.width, level.height, [&](std::size_t i) {
-                               return WeightedTexel{level.color[i], level.weight[i]};
-                             });
-    ColorLevel mean{level.width, level.height, std::vector<V3f>(level.color.size())};
-    tbb::parallel_for(std::size_t{0}, mean.color.size(),
-                      [&](std::size_t i) { mean.color[i] = level.color[i] / level.weight[i]; });
-    levels.push_back(std::move(mean));
+  std::vector<WeightedLevel> sums{{texture.width, texture.height, {}, {}}};
+  while (sums.back().width > 1 || sums.back().height > 1) {
+    const WeightedLevel& finer = sums.back();
+    sums.push_back(sums.size() == 1
+                       ? coarser(finer.width, finer.height,
+                                 [&](std::size_t i) { return texel_of(texture, weights, i); })
+                       : coarser(finer.width, finer.height, [&](std::size_t i) {
+                           return WeightedTexel{finer.color[i], finer.weight[i]};
+                         }));
+  }
+  const bool any_seen = sums.size() == 1 || sums.back().weight[0] > 0;
+  if (!any_seen) return color_mip_levels(texture, {});
+  std::vector<ColorLevel> levels(sums.size() - 1);
+  for (std::size_t k = levels.size(); k-- > 0;) {
+    const WeightedLevel& sum = sums[k + 1];
+    ColorLevel& level = levels[k];
+    level = {sum.width, sum.height, std::vector<V3f>(sum.color.size())};
+    tbb::parallel_for(std::size_t{0}, level.color.size(), [&](std::size_t i) {
+      level.color[i] = sum.weight[i] > 0
+                           ? sum.color[i] / sum.weight[i]
+                           : color_around(levels[k + 1], level.width, level.height, i);
+    });
+    sums.pop_back();
   }
   return levels;
+}
+
+bool is_seen(const ColorTexture& texture, const TexelWeights& weights, std::size_t texel) {
+  return weight_of(texture, weights, texel) > 0;
+}
+
+const V3f& color_around(const ColorLevel& coarser, std::uint32_t width, std::uint32_t height,
+                        std::size_t texel) {
+  return coarser.color[covering(coarser, width, height, texel)];
 }
 
 }  // namespace dapple

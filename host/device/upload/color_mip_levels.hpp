@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <compare>
+#include <cstdint>
 #include <vector>
 
 #include "dapple/scene.hpp"
@@ -19,19 +21,27 @@ const std::array<float, 256>& linear_of_codes();
 
 /// How much texels count in means, by their alphas: as much as they are seen.
 struct TexelWeights {
-  static constexpr int kEqual = -1, kByAlpha = -2;
-  int least =
-      kEqual;  ///< or the least alpha of 8 bits that is seen, of those that hide all or nothing
+  enum class Kind : std::uint8_t { equal, by_alpha, cut_out };
+  Kind kind = Kind::equal;
+  int least_seen = 0;  ///< of cut-outs the least alpha of 8 bits that is seen; 256: none is
 
-  bool operator<(const TexelWeights& other) const { return least < other.least; }
+  auto operator<=>(const TexelWeights&) const = default;
 };
 
-/// Equal where a material ignores alphas, 0 or 1 for masks, else by alpha.
+/// Equal where a material ignores alphas, by alpha where it blends, cut out where it masks.
 TexelWeights texel_weights(const Material& material);
 
 /// The levels above the texture itself. Level k is half as wide and high as level k - 1, rounded
-/// down, and at least 1. Unseen texels of a cut-out do not colour the others; where none is seen
-/// all count the same.
+/// down, and at least 1. Texels that are not seen do not colour the others, and get the colour of
+/// what is seen around them, since lookups between texels read them, too (push-pull: Gortler et
+/// al., "The Lumigraph", 1996). Where none is seen all count the same.
 std::vector<ColorLevel> color_mip_levels(const ColorTexture& texture, const TexelWeights& weights);
+
+/// Whether a texel counts at all.
+bool is_seen(const ColorTexture& texture, const TexelWeights& weights, std::size_t texel);
+
+/// The colour that a texel of a level of this size has in the next coarser one.
+const V3f& color_around(const ColorLevel& coarser, std::uint32_t width, std::uint32_t height,
+                        std::size_t texel);
 
 }  // namespace dapple

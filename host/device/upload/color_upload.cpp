@@ -62,11 +62,14 @@ std::vector<uint> pack_levels(const Scene& scene, const ColorTexture& texture,
     green[c] = code(linear_of_codes()[c], DAPPLE_GREEN_CODES) << 11;
     blue[c] = code(linear_of_codes()[c], DAPPLE_BLUE_CODES) << 22;
   }
+  const std::vector<ColorLevel> levels = color_mip_levels(texture, weights);
   append(texture.rgb.size() / 3, [&](std::size_t i) {
+    if (!levels.empty() && !is_seen(texture, weights, i))
+      return packed(color_around(levels.front(), texture.width, texture.height, i));
     const std::uint8_t* texel = &texture.rgb[3 * i];
     return red[texel[0]] | green[texel[1]] | blue[texel[2]];
   });
-  for (const ColorLevel& level : color_mip_levels(texture, weights)) {
+  for (const ColorLevel& level : levels) {
     if (offsets.size() > DAPPLE_MAX_MIPS) break;
     append(level.color.size(), [&](std::size_t i) { return packed(level.color[i]); });
   }
@@ -245,7 +248,9 @@ Checksum color_key(const Scene& scene) {
   for (const Material& material : scene.materials) {
     for (int channel = 0; channel < 3; ++channel) key.add_value(material.color[channel]);
     key.add_value(material.color_texture);
-    key.add_value(texel_weights(material).least);
+    const TexelWeights weights = texel_weights(material);
+    key.add_value(weights.kind);
+    key.add_value(weights.least_seen);
   }
   for (const Mesh& mesh : scene.meshes) {
     key.add_range(mesh.materials);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <unordered_map>
 
 #include "bvh/opacity/texture_integrals.hpp"
 #include "bvh/opacity/triangle_opacity.hpp"
@@ -21,7 +22,7 @@ constexpr std::size_t kMostDivisions = 16, kMostLookups = 1u << 22;
 
 /// The mean opacity of each triangle: what is cut out or transparent does not shine.
 std::vector<float> mean_opacities(const Scene& scene, const OpaqueTexels& texels,
-                                  const Mesh& mesh) {
+                                  SharedMipLevels& mip_levels, const Mesh& mesh) {
   std::vector<float> opacities;
   std::vector<TexturedTriangle> textured;
   for (std::uint32_t t = 0; t < mesh.primitive_count(); ++t) {
@@ -30,7 +31,7 @@ std::vector<float> mean_opacities(const Scene& scene, const OpaqueTexels& texels
     opacities.push_back(uniform.value_or(-1));
   }
   if (textured.empty()) return opacities;
-  const TextureIntegrals integrals(scene, textured);
+  const TextureIntegrals integrals(scene, textured, mip_levels);
   const auto affordable = static_cast<std::size_t>(
       std::sqrt(static_cast<double>(kMostLookups) / static_cast<double>(textured.size())));
   const std::size_t divisions = std::clamp<std::size_t>(affordable, 1, kMostDivisions);
@@ -40,44 +41,75 @@ std::vector<float> mean_opacities(const Scene& scene, const OpaqueTexels& texels
   return opacities;
 }
 
-/// Appends the triangles of every instance that emits for `light`. Returns the area in m^2 that
-/// shines.
-double append_emitters(const Scene& scene, const OpaqueTexels& texels, int light,
-                       std::vector<EmitterTriangle>& emitters) {
-  std::vector<EmitterTriangle> of_light;
+/// The triangles of `instance` whose `opacities` leave them light. Appends them to `triangles`.
+/// Returns their area in m^2, times their opacities.
+double append_instance(const Instance& instance, const Mesh& mesh,
+                       const std::vector<float>& opacities,
+                       std::vector<EmitterTriangle>& triangles) {
+  // A mirrored instance reverses the winding of its triangles. The swapped edges keep the normal on
+  // the front face, as glTF defines it.
+  const bool mirrored = Imath::M44d(instance.to_world).determinant() < 0;
   double total = 0;
-  for (const Instance& instance : scene.instances) {
-    if (instance.light != light) continue;
-    const Mesh& mesh = scene.meshes[instance.mesh];
-    if (mesh.has_strands()) continue;
-    const std::vector<float> opacities = mean_opacities(scene, texels, mesh);
-    for (std::size_t t = 0; t < mesh.primitive_count(); ++t) {
-      const auto corner = [&](int c) {
-        return mesh.positions[mesh.indices[3 * t + c]] * instance.to_world;
-      };
-      const V3f vertex = corner(0);
-      const V3f edge1 = corner(1) - vertex, edge2 = corner(2) - vertex;
-      const V3f cross = edge1.cross(edge2);
-      const double area = 0.5 * cross.length() * double{opacities[t]};
-      if (!(area > 0)) continue;
-      EmitterTriangle triangle{};
-      store(vertex, triangle.vertex);
-      triangle.area = static_cast<float>(area);
-      // A mirrored instance reverses the winding of its triangles. The swapped edges keep the
-      // normal on the front face, as glTF defines it.
-      const bool mirrored = Imath::M44d(instance.to_world).determinant() < 0;
-      store(mirrored ? edge2 : edge1, triangle.edge1);
-      store(mirrored ? edge1 : edge2, triangle.edge2);
-      of_light.push_back(triangle);
-      total += area;
-    }
+  for (std::size_t t = 0; t < mesh.primitive_count(); ++t) {
+    const auto corner = [&](int c) {
+      return mesh.positions[mesh.indices[3 * t + c]] * instance.to_world;
+    };
+    const V3f vertex = corner(0);
+    const V3f edge1 = corner(1) - vertex, edge2 = corner(2) - vertex;
+    const double area = 0.5 * edge1.cross(edge2).length() * double{opacities[t]};
+    if (!(area > 0)) continue;
+    EmitterTriangle triangle{};
+    store(vertex, triangle.vertex);
+    triangle.area = static_cast<float>(area);
+    store(mirrored ? edge2 : edge1, triangle.edge1);
+    store(mirrored ? edge1 : edge2, triangle.edge2);
+    triangles.push_back(triangle);
+    total += area;
   }
-  if (of_light.empty()) of_light.push_back({});  // kernels expect one; this one gives no light
-  divide_long_emitters(of_light);
-  order_emitters(of_light);
-  emitters.insert(emitters.end(), of_light.begin(), of_light.end());
   return total;
 }
+
+/// The triangles of mesh lights.
+class Emitters {
+ public:
+  explicit Emitters(const Scene& scene) : scene_(scene), of_lights_(scene.lights.size()) {
+    for (const Instance& instance : scene.instances) {
+      const auto light = static_cast<std::size_t>(instance.light);
+      if (instance.light >= 0 && light < of_lights_.size()) of_lights_[light].push_back(&instance);
+    }
+  }
+
+  /// Appends the triangles of every instance that emits for `light`. Returns the area in m^2 that
+  /// shines.
+  double append(std::size_t light, std::vector<EmitterTriangle>& emitters) {
+    std::vector<EmitterTriangle> of_light;
+    double total = 0;
+    for (const Instance* instance : of_lights_[light]) {
+      const Mesh& mesh = scene_.meshes[instance->mesh];
+      if (mesh.has_strands()) continue;
+      total += append_instance(*instance, mesh, opacities_of(instance->mesh), of_light);
+    }
+    if (of_light.empty()) of_light.push_back({});  // kernels expect one; this one gives no light
+    divide_long_emitters(of_light);
+    order_emitters(of_light);
+    emitters.insert(emitters.end(), of_light.begin(), of_light.end());
+    return total;
+  }
+
+ private:
+  /// Found once for each mesh: many lamps may be instances of one.
+  const std::vector<float>& opacities_of(std::uint32_t mesh) {
+    const auto [at, is_new] = opacities_.try_emplace(mesh);
+    if (is_new) at->second = mean_opacities(scene_, texels_, mip_levels_, scene_.meshes[mesh]);
+    return at->second;
+  }
+
+  const Scene& scene_;
+  const OpaqueTexels texels_{scene_};
+  SharedMipLevels mip_levels_{scene_};
+  std::vector<std::vector<const Instance*>> of_lights_;
+  std::unordered_map<std::uint32_t, std::vector<float>> opacities_;
+};
 
 /// The edges of a rect, the shorter one first, as its kernels take them, and its area.
 void store_rect(const Light& light, LightRecord& record) {
@@ -126,7 +158,7 @@ uint kind_of(LightKind kind) {
 
 void pack_lights(const Scene& scene, std::vector<LightRecord>& records,
                  std::vector<EmitterTriangle>& emitters) {
-  const OpaqueTexels texels(scene);
+  Emitters meshes(scene);
   int next_sequence = 0;
   for (std::size_t index = 0; index < scene.lights.size(); ++index) {
     const Light& light = scene.lights[index];
@@ -148,8 +180,7 @@ void pack_lights(const Scene& scene, std::vector<LightRecord>& records,
     if (light.kind == LightKind::mesh) {
       record.id = static_cast<uint>(index + 1);
       record.first_triangle = static_cast<uint>(emitters.size());
-      record.area =
-          static_cast<float>(append_emitters(scene, texels, static_cast<int>(index), emitters));
+      record.area = static_cast<float>(meshes.append(index, emitters));
       record.triangle_count = static_cast<uint>(emitters.size()) - record.first_triangle;
     }
     records.push_back(record);

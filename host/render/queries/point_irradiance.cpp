@@ -13,10 +13,10 @@
 #include "device/upload/scene_upload.hpp"
 #include "passes/light_pass.hpp"
 #include "passes/occlusion_pass.hpp"
-#include "passes/point_order.hpp"
 #include "render/option_check.hpp"
 #include "render/queries/free_shifts.hpp"
 #include "render/queries/point_checks.hpp"
+#include "sampling/point_order.hpp"
 #include "scene/images/color.hpp"
 
 namespace dapple {

@@ -13,12 +13,12 @@
 #include "device/context.hpp"
 #include "device/upload/scene_upload.hpp"
 #include "passes/occlusion_pass.hpp"
-#include "passes/point_order.hpp"
 #include "passes/queues.hpp"
 #include "render/option_check.hpp"
 #include "render/queries/free_shifts.hpp"
 #include "render/queries/point_checks.hpp"
 #include "render/queries/shared_points.hpp"
+#include "sampling/point_order.hpp"
 
 namespace dapple {
 namespace {

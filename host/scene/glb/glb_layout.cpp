@@ -38,7 +38,21 @@ Json matrix_json(const M44f& m) {
   return elements;
 }
 
-Json material_json(const Material& material) {
+float largest_channel(const V3f& color) { return std::max({color.x, color.y, color.z}); }
+
+/// Which materials emit from an instance: lights that were taken out of the scene stay out.
+std::vector<bool> shining_materials(const Scene& scene) {
+  std::vector<bool> shining(scene.materials.size());
+  for (const Instance& instance : scene.instances) {
+    if (instance.light < 0) continue;
+    for (const std::uint32_t material : scene.meshes[instance.mesh].materials)
+      shining.at(material) = true;
+  }
+  return shining;
+}
+
+/// `shines`: an instance emits what the material does.
+Json material_json(const Material& material, bool shines) {
   Json json = {
       {"name", material.name},
       {"doubleSided", material.double_sided},
@@ -50,7 +64,7 @@ Json material_json(const Material& material) {
     json["alphaMode"] = "MASK";
     json["alphaCutoff"] = material.alpha_cutoff;
   }
-  const float brightest = std::max({material.emission.x, material.emission.y, material.emission.z});
+  const float brightest = shines ? largest_channel(material.emission) : 0;
   if (brightest > 0)
     json["emissiveFactor"] = vector_json(material.emission / std::max(brightest, 1.0f));
   if (brightest > 1) {
@@ -120,9 +134,9 @@ class Describer {
 
   GlbLayout describe() {
     json_["asset"] = {{"version", "2.0"}, {"generator", "dapple"}};
-    for (const Material& material : scene_.materials) {
-      json_["materials"].push_back(material_json(material));
-    }
+    shining_ = shining_materials(scene_);
+    for (std::size_t m = 0; m < scene_.materials.size(); ++m)
+      json_["materials"].push_back(material_json(scene_.materials[m], shining_[m]));
     for (const Mesh& mesh : scene_.meshes) add_mesh(mesh);
     for (const Instance& instance : scene_.instances) add_instance(instance);
     for (const Camera& camera : scene_.cameras) add_camera(camera);
@@ -232,7 +246,11 @@ class Describer {
   void add_instance(const Instance& instance) {
     const int mesh = mesh_numbers_[instance.mesh];
     if (mesh < 0) return;
-    add_node({{"name", scene_.meshes[instance.mesh].name}, {"mesh", mesh}}, instance.to_world);
+    const auto node = static_cast<std::size_t>(instance.node);
+    const bool has_name = instance.node >= 0 && node < scene_.node_names.size();
+    const std::string name = has_name ? scene_.node_names[node] : "";
+    add_node({{"name", name.empty() ? scene_.meshes[instance.mesh].name : name}, {"mesh", mesh}},
+             instance.to_world);
   }
 
   void add_camera(const Camera& camera) {
@@ -251,15 +269,15 @@ class Describer {
     json_["scenes"] = {{{"name", scene_.source}}};
     if (!root_nodes_.empty()) json_["scenes"][0]["nodes"] = root_nodes_;
     if (layout_.byte_count > 0) json_["buffers"] = {{{"byteLength", layout_.byte_count}}};
-    for (const Material& material : scene_.materials) {
-      if (std::max({material.emission.x, material.emission.y, material.emission.z}) <= 1) continue;
-      json_["extensionsUsed"] = {gltf::extension::kEmissiveStrength};
-    }
+    for (std::size_t m = 0; m < scene_.materials.size(); ++m)
+      if (shining_[m] && largest_channel(scene_.materials[m].emission) > 1)
+        json_["extensionsUsed"] = {gltf::extension::kEmissiveStrength};
     // Names may hold bytes that are not UTF-8: dump() replaces them instead of throwing.
     layout_.json = json_.dump(-1, ' ', false, Json::error_handler_t::replace);
   }
 
   const Scene& scene_;
+  std::vector<bool> shining_;  ///< by material
   Json json_;
   GlbLayout layout_;
   std::vector<int> mesh_numbers_;

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <numbers>
 #include <optional>
+#include <set>
 
 #include "scene/free_names.hpp"
 #include "scene/message.hpp"
@@ -108,8 +109,30 @@ std::vector<Camera> read_lenses(const Document& document, std::vector<std::strin
   return lenses;
 }
 
+std::string name_in_file(const Document& document, const tinygltf::Node& node) {
+  const auto& camera = document.model.cameras[static_cast<std::size_t>(node.camera)];
+  return one_line(!camera.name.empty() ? camera.name
+                  : !node.name.empty() ? node.name
+                                       : fmt::format("camera_{}", node.camera));
+}
+
+/// Names by which --camera reaches all of the nodes' cameras. The first one of a name keeps it.
+std::vector<std::string> names_of(const Document& document, const std::vector<PlacedNode>& placed) {
+  std::vector<std::string> given, names;
+  FreeNames free;
+  for (const PlacedNode& at : placed) {
+    given.push_back(
+        name_in_file(document, document.model.nodes[static_cast<std::size_t>(at.node)]));
+    free.reserve(given.back());
+  }
+  std::set<std::string> kept;
+  for (const std::string& name : given)
+    names.push_back(kept.insert(name).second ? name : free.take(name));
+  return names;
+}
+
 void add_camera(const Document& document, const PlacedNode& placed,
-                const std::vector<Camera>& lenses, FreeNames& names, Scene& scene) {
+                const std::vector<Camera>& lenses, const std::string& name, Scene& scene) {
   const auto& node = document.model.nodes[static_cast<std::size_t>(placed.node)];
   const auto& given = document.model.cameras[static_cast<std::size_t>(node.camera)];
   const std::string who = element("camera", static_cast<std::size_t>(node.camera), given.name);
@@ -118,9 +141,7 @@ void add_camera(const Document& document, const PlacedNode& placed,
   if (of_node != document.camera_node_extras.end())
     read_extras(of_node->second, element("node", static_cast<std::size_t>(placed.node), node.name),
                 document.file, camera, scene.warnings);
-  camera.name = names.take(one_line(!given.name.empty()  ? given.name
-                                    : !node.name.empty() ? node.name
-                                                         : fmt::format("camera_{}", node.camera)));
+  camera.name = name;
   const std::optional<M44f> to_world = rigid(placed.to_world);
   if (!to_world) {
     scene.warnings.push_back(one_line(
@@ -135,12 +156,13 @@ void add_camera(const Document& document, const PlacedNode& placed,
 
 void add_cameras(const Document& document, const std::vector<PlacedNode>& placed, Scene& scene) {
   const std::vector<Camera> lenses = read_lenses(document, scene.warnings);
-  FreeNames names;  // so that --camera reaches them all
-  for (const PlacedNode& at : placed) {
-    if (document.model.nodes[static_cast<std::size_t>(at.node)].camera >= 0) {
-      add_camera(document, at, lenses, names, scene);
-    }
-  }
+  std::vector<PlacedNode> with_camera;
+  for (const PlacedNode& at : placed)
+    if (document.model.nodes[static_cast<std::size_t>(at.node)].camera >= 0)
+      with_camera.push_back(at);
+  const std::vector<std::string> names = names_of(document, with_camera);
+  for (std::size_t i = 0; i < with_camera.size(); ++i)
+    add_camera(document, with_camera[i], lenses, names[i], scene);
 }
 
 }  // namespace dapple::gltf

@@ -76,7 +76,7 @@ M44d instance_matrix(const InstanceAttributes& instances, std::uint64_t i) {
 
 /// Returns the world matrices of all instances that one node makes of its mesh. `so_far` is the
 /// number of instances before them.
-std::vector<M44d> node_matrices(const Document& document, const PlacedNode& placed,
+std::vector<M44d> node_matrices(const Document& document, const PlacedNode& placed, bool is_skinned,
                                 std::uint64_t so_far) {
   const auto& node = document.model.nodes[static_cast<std::size_t>(placed.node)];
   const auto instancing = node.extensions.find(extension::kInstancing);
@@ -94,7 +94,9 @@ std::vector<M44d> node_matrices(const Document& document, const PlacedNode& plac
   std::vector<M44d> matrices;
   matrices.reserve(instances.count);
   for (std::uint64_t i = 0; i < instances.count; ++i) {
-    matrices.push_back(instance_matrix(instances, i) * placed.to_world);
+    const M44d of_instance = instance_matrix(instances, i);
+    // Joints have placed a skinned mesh already, but for its mirror image.
+    matrices.push_back(is_skinned ? placed.to_world * of_instance : of_instance * placed.to_world);
   }
   return matrices;
 }
@@ -234,7 +236,8 @@ void add_instances(const Document& document, const std::vector<PlacedNode>& plac
     }
     if (known->second.empty()) continue;
     const PlacedNode placed_at = Skeletons::placement(use, at);
-    for (const M44d& to_world : node_matrices(document, placed_at, scene.instances.size())) {
+    for (const M44d& to_world :
+         node_matrices(document, placed_at, use.skin >= 0, scene.instances.size())) {
       add_placement(known->second, to_world, at.node, node.name, scene);
     }
   }

@@ -29,29 +29,6 @@ std::optional<AccessorReader> read_normals(const Document& document,
   return AccessorReader(document, accessor);
 }
 
-std::optional<AccessorReader> read_uvs(const Document& document,
-                                       const tinygltf::Primitive& primitive,
-                                       const AlphaLookup& lookup, const std::string& who) {
-  const std::string name = fmt::format("TEXCOORD_{}", lookup.texcoord);
-  const int accessor = attribute(primitive, name);
-  if (accessor < 0) return {};
-  require_type(document, accessor, who + " " + name, {TINYGLTF_TYPE_VEC2}, kFloatOrQuantized);
-  return AccessorReader(document, accessor);
-}
-
-/// Returns COLOR_0 if it has `components` or more.
-std::optional<AccessorReader> read_colors(const Document& document,
-                                          const tinygltf::Primitive& primitive,
-                                          const std::string& who, std::uint64_t components) {
-  const int accessor = attribute(primitive, "COLOR_0");
-  if (accessor < 0) return {};
-  require_type(document, accessor, who + " COLOR_0", {TINYGLTF_TYPE_VEC3, TINYGLTF_TYPE_VEC4},
-               {Component::float32, Component::uint8, Component::uint16});
-  AccessorReader colors(document, accessor);
-  if (colors.components() < components) return {};
-  return colors;
-}
-
 V2f finite_or_zero(V2f uv) { return std::isfinite(uv.x) && std::isfinite(uv.y) ? uv : V2f(0, 0); }
 
 /// Zero, which stands for the normal of the face, for a vector without a direction.
@@ -70,12 +47,36 @@ int attribute(const tinygltf::Primitive& primitive, const std::string& name) {
   return found == primitive.attributes.end() ? -1 : found->second;
 }
 
+std::optional<AccessorReader> read_uvs(const Document& document,
+                                       const tinygltf::Primitive& primitive, std::uint32_t set,
+                                       const std::string& who) {
+  const std::string name = fmt::format("TEXCOORD_{}", set);
+  const int accessor = attribute(primitive, name);
+  if (accessor < 0) return {};
+  require_type(document, accessor, who + " " + name, {TINYGLTF_TYPE_VEC2}, kFloatOrQuantized);
+  return AccessorReader(document, accessor);
+}
+
+std::optional<AccessorReader> read_colors(const Document& document,
+                                          const tinygltf::Primitive& primitive,
+                                          const std::string& who, std::uint64_t components) {
+  const int accessor = attribute(primitive, "COLOR_0");
+  if (accessor < 0) return {};
+  require_type(document, accessor, who + " COLOR_0", {TINYGLTF_TYPE_VEC3, TINYGLTF_TYPE_VEC4},
+               {Component::float32, Component::uint8, Component::uint16});
+  AccessorReader colors(document, accessor);
+  if (colors.components() < components) return {};
+  return colors;
+}
+
 Attributes read_attributes(const Document& document, const tinygltf::Primitive& primitive,
                            const AttributeNeeds& needs, const AlphaLookup& lookup,
                            const std::string& who) {
   Attributes attributes{read_positions(document, primitive, who), {}, {}, {}, {}, needs.uvs};
   if (needs.normals) attributes.normals = read_normals(document, primitive, who);
-  if (needs.uvs) attributes.uvs = read_uvs(document, primitive, lookup, who);
+  if (needs.uvs)
+    attributes.uvs =
+        read_uvs(document, primitive, static_cast<std::uint32_t>(lookup.texcoord), who);
   if (needs.alphas) attributes.alphas = read_colors(document, primitive, who, 4);
   if (needs.colors) attributes.colors = read_colors(document, primitive, who, 3);
   return attributes;

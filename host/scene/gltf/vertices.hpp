@@ -36,6 +36,18 @@ struct AttributeNeeds {
 /// Returns the accessor of an attribute, -1 when the primitive does not have it.
 int attribute(const tinygltf::Primitive& primitive, const std::string& name);
 
+/// TEXCOORD_`set`, if the primitive has it. Throws Error input, naming `who`, for a type that
+/// texture coordinates cannot have.
+std::optional<AccessorReader> read_uvs(const Document& document,
+                                       const tinygltf::Primitive& primitive, std::uint32_t set,
+                                       const std::string& who);
+
+/// COLOR_0, if the primitive has it with `components` or more. Throws Error input, naming `who`,
+/// for a type that colours cannot have.
+std::optional<AccessorReader> read_colors(const Document& document,
+                                          const tinygltf::Primitive& primitive,
+                                          const std::string& who, std::uint64_t components);
+
 /// Throws Error input, naming `who`, for a type that an attribute cannot have. `uvs` stays empty
 /// when the primitive does not have the TEXCOORD of `lookup`.
 Attributes read_attributes(const Document& document, const tinygltf::Primitive& primitive,

@@ -7,10 +7,12 @@
 #include <tbb/parallel_for_each.h>
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <utility>
 
 #include "dapple/error.hpp"
+#include "files/exr_color_space.hpp"
 #include "files/exr_reader.hpp"
 #include "scene/check/scene_check.hpp"
 #include "scene/images/color.hpp"
@@ -56,14 +58,22 @@ Environment read_exr_dome(const std::string& path) {
     return 0;  // Y
   };
   const std::size_t r = number_of("R"), g = number_of("G"), b = number_of("B");
+  if (is_cube_map(file.header()))
+    refuse(path, "shows the sides of a cube (envmap); dapple reads latitude and longitude");
+  const Imath::M33f to_linear_bt709 = to_bt709(file.header());
+  if (!std::isfinite(to_linear_bt709.determinant()))
+    refuse(path, "has chromaticities without an area");
+  const bool converts = to_linear_bt709 != Imath::M33f();
   DomeRows dome(file.width(), file.height());
   std::vector<std::vector<float>> rows;
   std::vector<V3f> pixels;
   for (const DomeRows::Strip& strip : dome.strips(kExrBlockRows * dome.rows_of_texel())) {
     file.read(strip.first, strip.count, channels, rows);
     pixels.resize(rows[0].size());
-    tbb::parallel_for(std::size_t{0}, pixels.size(),
-                      [&](std::size_t i) { pixels[i] = V3f(rows[r][i], rows[g][i], rows[b][i]); });
+    tbb::parallel_for(std::size_t{0}, pixels.size(), [&](std::size_t i) {
+      const V3f pixel(rows[r][i], rows[g][i], rows[b][i]);
+      pixels[i] = converts ? pixel * to_linear_bt709 : pixel;
+    });
     dome.add(strip, pixels);
   }
   Environment environment = dome.take(path);

@@ -128,7 +128,7 @@ RadianceImage::RadianceImage(std::span<const std::uint8_t> bytes, const std::str
     row_starts_ = find_rows(bytes, begin_, width, height);
     if (row_starts_.empty()) refuse(what, "is corrupt or ends early");
   } else if (bytes.size() - begin_ < std::size_t{4} * static_cast<std::size_t>(pixels)) {
-    refuse(what, "is corrupt or ends early");
+    refuse(what, "is corrupt, ends early, or has runs in the old encoding, which is not read");
   }
 }
 

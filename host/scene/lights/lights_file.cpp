@@ -128,7 +128,8 @@ Light read_sun(const LightFields& fields) {
   const double sine = std::sin(angular_radius);
   light.radiance =
       fields.colour("irradiance") * static_cast<float>(1 / (std::numbers::pi * sine * sine));
-  if (!std::isfinite(light.radiance.length2())) {
+  const V3f& radiance = light.radiance;
+  if (!(std::max({radiance.x, radiance.y, radiance.z}) <= kLargestRadiance)) {
     fields.fail_at("irradiance", "is too large for so small an angle_degrees");
   }
   return light;

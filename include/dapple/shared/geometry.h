@@ -61,7 +61,8 @@ typedef struct MaterialRecord {
 typedef struct InstanceRecord {
   float to_object[12];
   float to_world[12];
-  float inverse_area_scale; /* 1 / |det of object to world|; see kernels/opacity/footprint.clh */
+  float inverse_det;        /* 1 / |det of to_world|, which projected areas of boxes take whole, since
+                               directions are not normalized: kernels/opacity/footprint.clh */
   uint root;                /* the object's root node */
   uint light;               /* 1 + the mesh light it emits for; 0: none */
   uint source;              /* index in Scene::instances */

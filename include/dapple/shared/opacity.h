@@ -50,7 +50,7 @@ using std::sqrt;
 
 /* Code c, 0 to 254, means (c / 255)^2 of DAPPLE_MAX_DEPTH, so that small depths do not round to 0. Of
    the codes of a child along x, 255 says that it is a wall: kernels/opacity/footprint.clh. */
-DAPPLE_FUNCTION float depth_decode(uchar code) {
+DAPPLE_FUNCTION float decode_depth(uchar code) {
   const float root = (float)code * (1.0f / 255.0f);
   return root * root * DAPPLE_MAX_DEPTH;
 }
@@ -66,7 +66,7 @@ DAPPLE_FUNCTION float depth_decode(uchar code) {
 #define DAPPLE_CORRELATION_MASK (-8)
 #define DAPPLE_CORRELATION_STEP (1.0f / 120.0f)
 
-DAPPLE_FUNCTION float correlation_decode(schar code) {
+DAPPLE_FUNCTION float decode_correlation(schar code) {
   return (float)(code & DAPPLE_CORRELATION_MASK) * DAPPLE_CORRELATION_STEP;
 }
 

@@ -9,13 +9,13 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <random>
 
 #include "bvh/build/object_bvh.hpp"
 #include "bvh/build/quantize_boxes.hpp"
 #include "dapple/error.hpp"
+#include "support/same_bits.hpp"
 
 namespace dapple {
 namespace {
@@ -184,17 +184,11 @@ class Walk {
 
 ObjectBvh expect_well_formed(const Scene& scene) {
   const ObjectBvh object = build_object(scene, OpaqueTexels(scene), scene.meshes[0]).object;
-  EXPECT_EQ(object.triangles, scene.meshes[0].primitive_count());
+  EXPECT_EQ(object.primitive_count, scene.meshes[0].primitive_count());
   Walk walk(scene.meshes[0], object);
   walk.run();
   EXPECT_TRUE(walk.missing().empty());
   return object;
-}
-
-template <class Array>
-bool same_bits(const Array& a, const Array& b) {
-  return a.size() == b.size() &&
-         (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])) == 0);
 }
 
 TEST(Bvh, EveryTriangleIsInOneLaneInsideItsBoxesAndIndicesAreInOrder) {
@@ -273,7 +267,7 @@ TEST(Bvh, FullyTransparentTrianglesAreDropped) {
   scene.materials.push_back(below_cutoff);
   for (std::uint32_t t = 0; t < 300; ++t) scene.meshes[0].materials[t] = t % 3;
   const ObjectBvh object = build_object(scene, OpaqueTexels(scene), scene.meshes[0]).object;
-  EXPECT_EQ(object.triangles, 100u);
+  EXPECT_EQ(object.primitive_count, 100u);
   EXPECT_EQ(object.translucent, 100u);
   Walk walk(scene.meshes[0], object);
   walk.run();

@@ -228,9 +228,9 @@ float stored_depth(const BvhNode& node, unsigned slot, const V3f& d) {
   const V3f size = child_box(node, slot).max - child_box(node, slot).min;
   float depth[3], correlation[3];
   for (int axis = 0; axis < 3; ++axis) {
-    depth[axis] = depth_decode(node.depth[axis][slot]);
+    depth[axis] = decode_depth(node.depth[axis][slot]);
     correlation[axis] = std::copysign(1.0f, d[axis] * d[(axis + 1) % 3]) *
-                        correlation_decode(node.correlation[axis][slot]);
+                        decode_correlation(node.correlation[axis][slot]);
   }
   return chord_depth(box_depth(depth[0], depth[1], depth[2], correlation[0], correlation[1],
                                correlation[2], size.y * size.z * std::fabs(d.x),

@@ -22,7 +22,7 @@ BvhNode unit_node() {
 }
 
 float stored_opacity(const BvhNode& node, int axis) {
-  return 1 - std::exp(-depth_decode(node.depth[axis][0]));
+  return 1 - std::exp(-decode_depth(node.depth[axis][0]));
 }
 
 TEST(OpacityCode, DecodingIsWithinHalfACodeAndKeepsSmallOpacities) {

@@ -367,7 +367,7 @@ TEST(Refit, RecordsTakeLessThanTwentyBytesPerTriangle) {
                        bytes_in(record.textured_opacity) + bytes_in(record.nodes) +
                        bytes_in(record.subtrees) + bytes_in(record.upper.nodes) +
                        bytes_in(record.upper.children) + bytes_in(record.upper_nodes);
-  const double each = bytes / static_cast<double>(built.object.triangles);
+  const double each = bytes / static_cast<double>(built.object.primitive_count);
   std::printf("%.1f bytes a triangle\n", each);
   EXPECT_LT(each, 20);
 }

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstring>
 #include <fstream>
 #include <functional>
 #include <limits>
@@ -16,6 +15,7 @@
 #include "dapple/bvh.hpp"
 #include "files/sealed_file.hpp"
 #include "support/files/film_files.hpp"
+#include "support/same_bits.hpp"
 #include "support/scenes/curly_strands.hpp"
 
 namespace dapple {
@@ -76,12 +76,6 @@ Scene strands_and_leaves() {
   Scene scene = single_object();
   scene_test::place(scene, scene_test::curly_strands({.strands = 40}));
   return scene;
-}
-
-template <class Array>
-bool same_bits(const Array& a, const Array& b) {
-  return a.size() == b.size() &&
-         (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])) == 0);
 }
 
 void expect_same(const SceneBvh& a, const SceneBvh& b) {

@@ -94,6 +94,28 @@ TEST_F(BakeCommand, UniqueInstancesOfAnExtensionBecomeNodes) {
   EXPECT_EQ(scene_bounds(scene), scene_bounds(before));
 }
 
+// The list of used extensions ends with the last instances, and other keys of the file take its
+// place.
+TEST_F(BakeCommand, UniqueInstancesOfALaterNodeLeaveTheRestOfTheFile) {
+  GltfBuilder builder;
+  builder.add_triangle();
+  const int places =
+      builder.add_accessor(std::vector<float>{0, 0, 0, 100, 0, 0}, test::kFloat, "VEC3");
+  json node = builder.doc["nodes"][0];
+  node["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {{"TRANSLATION", places}};
+  builder.doc["nodes"] = {{{"name", "a"}}, {{"name", "b"}}, {{"name", "c"}}, node, node};
+  builder.doc["scenes"] = {{{"nodes", {0, 1, 2, 3, 4}}}};
+  builder.doc["extensionsUsed"] = {"EXT_mesh_gpu_instancing"};
+  write("in.glb", builder.glb());
+  const Outcome run = dapple("bake in.glb -o out.glb --instances unique --rays 8");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const json after = document("out.glb");
+  EXPECT_EQ(after["scenes"], builder.doc["scenes"]);
+  EXPECT_EQ(after["nodes"].size(), 9u);
+  for (const json& each : after["nodes"]) EXPECT_FALSE(each.contains("extensions")) << each;
+  EXPECT_EQ(load_gltf(path("out.glb")).instances.size(), 4u);
+}
+
 /// A triangle at three places of EXT_mesh_gpu_instancing; `more` are other attributes of them.
 GltfBuilder three_instances(const std::function<json(GltfBuilder&)>& more) {
   GltfBuilder builder;
@@ -190,7 +212,8 @@ TEST_F(BakeCommand, ExtrasOfInstancesThatAreNotObjectsAreKept) {
                        "note: node 0 (\"twig\") has extras that are not an object; they are kept "
                        "as extras.value (2 of them)\n"))
       << run.err;
-  EXPECT_TRUE(contains(run.err, "note: node 3 had such values in its extras, which are replaced\n"));
+  EXPECT_TRUE(
+      contains(run.err, "note: node 3 had such values in its extras, which are replaced\n"));
   const json nodes = document("out.glb")["nodes"];
   for (const json& node : nodes) EXPECT_TRUE(node["extras"].contains("ao")) << node;
   EXPECT_EQ(nodes[0]["extras"]["value"], "tall");

@@ -110,6 +110,29 @@ TEST_F(BakeCommand, MeshesThatUseOtherVerticesOfOneBufferShareTheirValues) {
   }
 }
 
+// A sheet that faces up, and down to a floor: each side has a primitive, and both the same
+// vertices.
+TEST_F(BakeCommand, SidesOfASheetThatShareVerticesHaveValuesOfTheirOwn) {
+  GltfBuilder builder = rich_triangle();
+  const int position = builder.add_accessor(
+      std::vector<float>{0, 0.3f, 0, 1, 0.3f, 0, 1, 0.3f, 1, 0, 0.3f, 1}, test::kFloat, "VEC3");
+  builder.doc["accessors"][position]["min"] = {0, 0.3f, 0};
+  builder.doc["accessors"][position]["max"] = {1, 0.3f, 1};
+  json primitives = json::array();
+  for (const std::vector<std::uint16_t>& indices :
+       {std::vector<std::uint16_t>{0, 2, 1, 0, 3, 2}, std::vector<std::uint16_t>{0, 1, 2, 0, 2, 3}})
+    primitives.push_back({{"attributes", {{"POSITION", position}}},
+                          {"indices", builder.add_accessor(indices, test::kUint16, "SCALAR")}});
+  builder.doc["meshes"][0]["primitives"] = primitives;
+  write("in.glb", builder.glb());
+  const Outcome run = dapple("bake in.glb -o out.glb --channel _AO --ground --rays 1024");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const test::GltfData file(path("out.glb"));
+  const json& sides = file.doc["meshes"][0]["primitives"];
+  for (const float ao : file.floats(sides[0]["attributes"]["_AO"])) EXPECT_GT(ao, 0.99f);
+  for (const float ao : file.floats(sides[1]["attributes"]["_AO"])) EXPECT_LT(ao, 0.1f);
+}
+
 // The second primitive has more indices than there are vertices, and does not use those of the
 // first.
 TEST_F(BakeCommand, AVertexHasNoPartOfPrimitivesThatDoNotUseIt) {

@@ -134,6 +134,25 @@ TEST_F(BakeSkins, AtVerticesAreKept) {
   EXPECT_EQ(vertices_of("out.glb"), vertices_of("in.glb"));
 }
 
+// A skin ignores the place of its node, so that its instances cannot become nodes.
+TEST_F(BakeSkins, WithInstancesKeepTheseWhereOthersBecomeUnique) {
+  test::Reed reed;
+  const int places =
+      reed.file.add_accessor(std::vector<float>{3, 0, 0, 6, 0, 0}, test::kFloat, "VEC3");
+  reed.file.doc["nodes"][kFirst]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {
+      {"TRANSLATION", places}};
+  reed.file.doc["extensionsUsed"] = {"EXT_mesh_gpu_instancing"};
+  write("in.glb", reed.file.glb());
+  const Outcome run = dapple("bake in.glb -o out.glb --rays 8 --instances unique");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_TRUE(contains(run.err, "skinned meshes with EXT_mesh_gpu_instancing keep it")) << run.err;
+  EXPECT_TRUE(test::world_triangles(load_gltf(path("out.glb"))) ==
+              test::world_triangles(load_gltf(path("in.glb"))));
+  const json nodes = document("out.glb")["nodes"];
+  EXPECT_NE(nodes[kFirst]["mesh"], nodes[kSecond]["mesh"]) << "the other node has its own";
+  EXPECT_TRUE(primitive_of(kFirst)["attributes"].contains("COLOR_0"));
+}
+
 TEST_F(BakeSkins, InATextureAreKeptByDuplicatedVertices) {
   bake("--to texture --size 64 --margin 2");
   expect_all_kept();

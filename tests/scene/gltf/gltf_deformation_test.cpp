@@ -226,6 +226,19 @@ TEST(GltfSkin, WeightsCountRelativeToTheirSumAndNoneMeansTheFirstJoint) {
   expect_near(vertex(none.b.load(), 3), V3f(1, 1, 0));
 }
 
+// Instances of a skinned mesh stand where their translation says, whatever the scale of their node.
+TEST(GltfSkin, InstancesOfAMirroredNodeAreNotMirrored) {
+  for (const int x : {1, -1}) {
+    Bar bar = make_bar();
+    bar.b.doc["nodes"][bar.mesh_node]["scale"] = {x, 1, 1};
+    const int places = bar.b.add_accessor(std::vector<float>{3, 0, 0}, kFloat, "VEC3");
+    bar.b.doc["nodes"][bar.mesh_node]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {
+        {"TRANSLATION", places}};
+    bar.b.doc["extensionsUsed"] = {"EXT_mesh_gpu_instancing"};
+    expect_near(vertex(bar.b.load(), 5), V3f(4, 2, 0));
+  }
+}
+
 TEST(GltfSkin, WithoutInverseBindMatricesJointsCarryFromTheOrigin) {
   Bar bar = make_bar();
   bar.b.doc["skins"][0].erase("inverseBindMatrices");

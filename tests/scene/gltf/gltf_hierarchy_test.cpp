@@ -116,6 +116,20 @@ TEST(GltfCamera, ThoseOfOneNameGetNumbersAlsoWhereOneIsScaledToNothing) {
   }
 }
 
+TEST(GltfCamera, ANameThatOneHasIsNotGivenToAnother) {
+  GltfBuilder builder;
+  builder.add_triangle();
+  for (const char* name : {"eye", "eye", "eye_2"}) {
+    const int camera = builder.add(
+        "cameras",
+        {{"name", name}, {"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}});
+    builder.add("nodes", {{"camera", camera}});
+  }
+  std::vector<std::string> names;
+  for (const Camera& camera : builder.load().cameras) names.push_back(camera.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"eye", "eye_3", "eye_2"}));
+}
+
 TEST(GltfCamera, OrthographicOnesKeepTheirHeight) {
   GltfBuilder builder;
   builder.add_triangle();

@@ -70,7 +70,8 @@ class GltfData {
 
   static std::size_t components(const json& accessor) {
     static const std::map<std::string, std::size_t> kCounts = {
-        {"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT4", 16}};
+        {"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4},
+        {"MAT2", 4},   {"MAT3", 9}, {"MAT4", 16}};
     return kCounts.at(accessor.at("type"));
   }
   /// Bytes of a component.

@@ -54,6 +54,24 @@ std::uint64_t component_count(int type) {
   return count > 0 ? static_cast<std::uint64_t>(count) : 0;
 }
 
+ElementLayout element_layout(const tinygltf::Accessor& accessor) {
+  ElementLayout layout;
+  layout.components = component_count(accessor.type);
+  layout.component_bytes = component_bytes(accessor.componentType);
+  const bool is_matrix = accessor.type == TINYGLTF_TYPE_MAT2 ||
+                         accessor.type == TINYGLTF_TYPE_MAT3 || accessor.type == TINYGLTF_TYPE_MAT4;
+  const std::uint64_t columns = accessor.type == TINYGLTF_TYPE_MAT2   ? 2
+                                : accessor.type == TINYGLTF_TYPE_MAT3 ? 3
+                                : is_matrix                           ? 4
+                                                                      : 1;
+  layout.rows = layout.components / columns;
+  const std::uint64_t column = layout.rows * layout.component_bytes;
+  layout.column_stride = is_matrix ? (column + 3) / 4 * 4 : column;
+  layout.stride = columns * layout.column_stride;
+  layout.bytes = layout.stride - layout.column_stride + column;
+  return layout;
+}
+
 std::string type_name(const tinygltf::Accessor& accessor) {
   static constexpr const char* kComponents[] = {"int8",  "uint8",  "int16", "uint16",
                                                 "int32", "uint32", "float"};
@@ -84,11 +102,10 @@ std::uint64_t sparse_count(const Document& document, int accessor) {
 AccessorReader::AccessorReader(const Document& document, int index) {
   const auto& accessor = document.model.accessors[static_cast<std::size_t>(index)];
   count_ = accessor.count;
-  components_ = component_count(accessor.type);
-  component_bytes_ = component_bytes(accessor.componentType);
+  layout_ = element_layout(accessor);
   type_ = static_cast<Component>(accessor.componentType);
   normalized_ = accessor.normalized && type_ != Component::float32;
-  stride_ = components_ * component_bytes_;
+  stride_ = layout_.stride;
   if (accessor.bufferView >= 0) {
     const auto& view = document.model.bufferViews[static_cast<std::size_t>(accessor.bufferView)];
     if (view.byteStride != 0) stride_ = view.byteStride;
@@ -123,7 +140,7 @@ const std::uint8_t* AccessorReader::element(std::uint64_t i) const {
     const auto found = std::lower_bound(sparse_indices_.begin(), sparse_indices_.end(), i);
     if (found != sparse_indices_.end() && *found == i) {
       const auto at = static_cast<std::uint64_t>(found - sparse_indices_.begin());
-      return sparse_values_ + at * components_ * component_bytes_;
+      return sparse_values_ + at * layout_.stride;
     }
   }
   return base_ == nullptr ? nullptr : base_ + i * stride_;
@@ -132,7 +149,7 @@ const std::uint8_t* AccessorReader::element(std::uint64_t i) const {
 float AccessorReader::number_of(const std::uint8_t* element, std::uint64_t component,
                                 bool normalize) const {
   if (element == nullptr) return 0.0f;
-  const std::uint8_t* bytes = element + component * component_bytes_;
+  const std::uint8_t* bytes = element + layout_.offset(component);
   switch (type_) {
     case Component::int8:
       return load_number<std::int8_t>(bytes, normalize);

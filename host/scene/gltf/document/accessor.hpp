@@ -30,6 +30,21 @@ std::uint64_t component_bytes(int component_type);
 /// Returns the number of components of a tinygltf type code: 1 for SCALAR to 16 for MAT4.
 std::uint64_t component_count(int type);
 
+/// Where the components of an element lie. Columns of matrices begin at multiples of four bytes
+/// (glTF 2.0, section 3.6.2.4).
+struct ElementLayout {
+  std::uint64_t components = 0, rows = 0;  ///< rows: components of a column; vectors have one
+  std::uint64_t component_bytes = 0, column_stride = 0;
+  std::uint64_t stride = 0;  ///< of elements without a byteStride
+  std::uint64_t bytes = 0;   ///< without padding after the last component
+
+  [[nodiscard]] std::uint64_t offset(std::uint64_t component) const {
+    return component / rows * column_stride + component % rows * component_bytes;
+  }
+};
+
+ElementLayout element_layout(const tinygltf::Accessor& accessor);
+
 /// "VEC3 of uint16", for messages.
 std::string type_name(const tinygltf::Accessor& accessor);
 
@@ -48,7 +63,7 @@ class AccessorReader {
   AccessorReader(const Document& document, int index);
 
   [[nodiscard]] std::uint64_t count() const { return count_; }
-  [[nodiscard]] std::uint64_t components() const { return components_; }
+  [[nodiscard]] std::uint64_t components() const { return layout_.components; }
 
   /// Returns a component as a float. Integers are mapped to [0,1] or [-1,1] when the accessor is
   /// normalized, and keep their value when it is not.
@@ -70,7 +85,7 @@ class AccessorReader {
   }
   /// Returns the bytes of an element, element_bytes() of them; null for zeros.
   [[nodiscard]] const std::uint8_t* bytes(std::uint64_t i) const { return element(i); }
-  [[nodiscard]] std::uint64_t element_bytes() const { return components_ * component_bytes_; }
+  [[nodiscard]] std::uint64_t element_bytes() const { return layout_.bytes; }
   /// Returns an unsigned integer, for accessors of indices.
   [[nodiscard]] std::uint32_t index(std::uint64_t i) const;
 
@@ -84,8 +99,7 @@ class AccessorReader {
   const std::uint8_t* base_ = nullptr;
   std::uint64_t stride_ = 0;
   std::uint64_t count_ = 0;
-  std::uint64_t components_ = 0;
-  std::uint64_t component_bytes_ = 0;
+  ElementLayout layout_;
   Component type_ = Component::float32;
   bool normalized_ = false;
   std::vector<std::uint32_t> sparse_indices_;  ///< increasing

@@ -57,34 +57,34 @@ class Validator {
   void check_accessor(std::size_t i) const {
     const Accessor& accessor = model_.accessors[i];
     const std::string who = fmt::format("accessor {}", i);
-    const std::uint64_t components = component_count(accessor.type);
-    const std::uint64_t element_bytes = component_bytes(accessor.componentType) * components;
+    const ElementLayout layout = element_layout(accessor);
     check_.index(who, "bufferView", accessor.bufferView, model_.bufferViews.size());
     if (accessor.bufferView >= 0) {
-      check_elements(who, accessor, element_bytes);
+      check_elements(who, accessor, layout);
     } else if (accessor.count > kMaxZeroElements) {
       fail(document_.file, "{} has {} elements but no bufferView (at most {} may be zeros)", who,
            grouped(accessor.count), grouped(kMaxZeroElements));
     }
     for (const auto& [name, values] :
          {std::pair{"min", &accessor.minValues}, std::pair{"max", &accessor.maxValues}}) {
-      if (values->empty() || values->size() == components) continue;
-      fail(document_.file, "{}: {} has {} numbers, not {}", who, name, values->size(), components);
+      if (values->empty() || values->size() == layout.components) continue;
+      fail(document_.file, "{}: {} has {} numbers, not {}", who, name, values->size(),
+           layout.components);
     }
-    if (accessor.sparse.isSparse) check_sparse(who, accessor, element_bytes);
+    if (accessor.sparse.isSparse) check_sparse(who, accessor, layout);
   }
 
   void check_elements(const std::string& who, const Accessor& accessor,
-                      std::uint64_t element_bytes) const {
+                      const ElementLayout& layout) const {
     const auto& view = model_.bufferViews[static_cast<std::size_t>(accessor.bufferView)];
-    const std::uint64_t stride = view.byteStride != 0 ? view.byteStride : element_bytes;
-    if (stride < element_bytes) {
+    const std::uint64_t stride = view.byteStride != 0 ? view.byteStride : layout.stride;
+    if (stride < layout.bytes) {
       fail(document_.file, "{} has elements of {} bytes in bufferView {} of byteStride {}", who,
-           element_bytes, accessor.bufferView, stride);
+           layout.bytes, accessor.bufferView, stride);
     }
     check_alignment(who, accessor.byteOffset, accessor.bufferView, accessor.componentType);
     // The sum is below 2^53 * 2^8 + 2^54, which fits in 64 bits.
-    const std::uint64_t needs = accessor.byteOffset + (accessor.count - 1) * stride + element_bytes;
+    const std::uint64_t needs = accessor.byteOffset + (accessor.count - 1) * stride + layout.bytes;
     check_.range(who, needs, view.byteLength, fmt::format("bufferView {}", accessor.bufferView));
   }
 
@@ -101,7 +101,7 @@ class Validator {
   }
 
   void check_sparse(const std::string& who, const Accessor& accessor,
-                    std::uint64_t element_bytes) const {
+                    const ElementLayout& layout) const {
     const auto& sparse = accessor.sparse;
     const auto count = static_cast<std::uint64_t>(sparse.count);
     if (count < 1 || count > accessor.count) {
@@ -117,7 +117,7 @@ class Validator {
                        sparse.indices.byteOffset, sparse.indices.componentType,
                        count * component_bytes(sparse.indices.componentType));
     check_sparse_range(who + " sparse.values", sparse.values.bufferView, sparse.values.byteOffset,
-                       accessor.componentType, count * element_bytes);
+                       accessor.componentType, (count - 1) * layout.stride + layout.bytes);
   }
 
   void check_sparse_range(const std::string& who, int view, std::int64_t offset, int component_type,

@@ -19,8 +19,8 @@ enum class Storage : std::uint8_t {
 /// Values of all vertices of a primitive, `components` numbers each.
 struct NewAttribute {
   std::uint32_t mesh = 0, primitive = 0;  ///< indices in the file
-  /// Primitives that share values have the same number here; attributes of one name and number are
-  /// stored once.
+  /// Primitives that share values have the same number here; of attributes of one name and number
+  /// only the first one's values count.
   std::size_t shared = 0;
   std::string name;              ///< such as "COLOR_0"; replaced if there is one
   std::uint32_t components = 1;  ///< 1 to 4

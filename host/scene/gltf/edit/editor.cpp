@@ -100,6 +100,12 @@ std::vector<std::string> Editor::side_files_written() const {
 
 bool Editor::is_glb_out() const { return fs::path(out_).extension() != ".gltf"; }
 
+bool Editor::has_binary() const {
+  const Json& json = content().json;
+  return content().container.binary && json.contains("buffers") && !json["buffers"].empty() &&
+         !json["buffers"][0].contains("uri");
+}
+
 // Whether the first buffer is the GLB's own, and none is in a file.
 bool Editor::has_no_buffer_files() const {
   const auto is_file = [](const Json& buffer) { return buffer.contains("uri"); };

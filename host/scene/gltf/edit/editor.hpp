@@ -43,7 +43,8 @@ class Editor {
 
  private:
   [[nodiscard]] bool is_glb_out() const;
-  [[nodiscard]] bool has_binary() const { return content().container.binary.has_value(); }
+  /// Whether a buffer is the binary chunk of a GLB file. Another one may lie there unused.
+  [[nodiscard]] bool has_binary() const;
   [[nodiscard]] bool has_no_buffer_files() const;
   [[nodiscard]] std::string side_name() const;
   [[nodiscard]] std::string free_name(const std::string& suffix,

@@ -40,6 +40,10 @@ Json node_of_instance(const Readers& readers, std::size_t i) {
   return node;
 }
 
+std::string primitive_label(std::uint32_t mesh, std::uint32_t primitive) {
+  return fmt::format("mesh {} primitive {}", mesh, primitive);
+}
+
 bool has_finite_place(const Json& node) {
   for (const char* key : {"translation", "rotation", "scale"})
     if (node.contains(key))
@@ -138,35 +142,34 @@ std::vector<int> SourceFile::split_gpu_instances(std::uint32_t node) {
     nodes.push_back(std::move(child));
   }
   for (const char* key : {"mesh", "skin", "weights"}) nodes[node].erase(key);
-  for (const char* name : {extension::kInstancing, extension::kInstanceFeatures}) {
-    remove_extension(nodes[node], name);
-    unlist_unused_extension(content->json, name);
-  }
+  constexpr const char* kExtensions[] = {extension::kInstancing, extension::kInstanceFeatures};
+  for (const char* name : kExtensions) remove_extension(nodes[node], name);
+  // These may erase a key of the file: `nodes` does not refer to its value any more.
+  for (const char* name : kExtensions) unlist_unused_extension(content->json, name);
   animate_instead(content->json, node, made);
   return made;
 }
 
 PrimitiveColors SourceFile::colors(std::uint32_t mesh, std::uint32_t primitive) const {
-  const int accessor = attribute(content->primitive(mesh, primitive), "COLOR_0");
-  if (accessor < 0) return {};
-  const AccessorReader reader(content->document, accessor);
-  PrimitiveColors colors{static_cast<std::uint32_t>(reader.components()), {}, false};
-  colors.are_floats = reader.element_bytes() == sizeof(float) * reader.components();
-  colors.values.resize(4 * reader.count(), 1.0f);
-  for (std::size_t i = 0; i < reader.count(); ++i)
+  const auto reader = read_colors(content->document, content->primitive(mesh, primitive),
+                                  primitive_label(mesh, primitive), 3);
+  if (!reader) return {};
+  PrimitiveColors colors{static_cast<std::uint32_t>(reader->components()), {}, false};
+  colors.are_floats = reader->element_bytes() == sizeof(float) * reader->components();
+  colors.values.resize(4 * reader->count(), 1.0f);
+  for (std::size_t i = 0; i < reader->count(); ++i)
     for (std::uint32_t c = 0; c < colors.components; ++c)
-      colors.values[4 * i + c] = reader.normalized(i, c);
+      colors.values[4 * i + c] = reader->normalized(i, c);
   return colors;
 }
 
 std::vector<Imath::V2f> SourceFile::uvs(std::uint32_t mesh, std::uint32_t primitive,
                                         std::uint32_t set) const {
-  const int accessor =
-      attribute(content->primitive(mesh, primitive), "TEXCOORD_" + std::to_string(set));
-  if (accessor < 0) return {};
-  const AccessorReader reader(content->document, accessor);
-  std::vector<Imath::V2f> uvs(reader.count());
-  for (std::size_t i = 0; i < uvs.size(); ++i) uvs[i] = reader.vec2(i);
+  const auto reader = read_uvs(content->document, content->primitive(mesh, primitive), set,
+                               primitive_label(mesh, primitive));
+  if (!reader) return {};
+  std::vector<Imath::V2f> uvs(reader->count());
+  for (std::size_t i = 0; i < uvs.size(); ++i) uvs[i] = reader->vec2(i);
   return uvs;
 }
 

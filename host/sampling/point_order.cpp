@@ -1,4 +1,4 @@
-#include "passes/point_order.hpp"
+#include "sampling/point_order.hpp"
 
 #include <algorithm>
 #include <array>
