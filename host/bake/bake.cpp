@@ -13,6 +13,7 @@
 #include "bake/bake_settings.hpp"
 #include "bake/inside/inside_samples.hpp"
 #include "bake/instance_bake.hpp"
+#include "bake/mesh_borders.hpp"
 #include "bake/mesh_placements.hpp"
 #include "bake/occluder_scene.hpp"
 #include "bake/samples/expected_samples.hpp"
@@ -180,7 +181,7 @@ class MeshOccluders {
       add_preparation(*alone_, preparing.seconds(), records.statistics);
       measure_bias(*alone_,
                    {PilotMesh(scene_.meshes[mesh], two_sided_, options_,
-                              placements_of(scene_, mesh, BakePlacement::alone))},
+                              placed_alone())},
                    options_, records.statistics);
     }
     compared_.emplace(options_);
@@ -208,11 +209,12 @@ class MeshOccluders {
 /// Calls bake(mesh, placements) for all meshes that can be baked. False: one returned false.
 template <class BakeOne>
 bool for_each_mesh(const Scene& scene, const BakeOptions& options, BakeOne bake_one) {
+  const std::vector<Placements> placements = placements_by_mesh(scene, options.placement);
   for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) {
     const Mesh& mesh = scene.meshes[m];
-    const Placements placements = placements_of(scene, m, options.placement);
-    if (mesh.has_strands() || mesh.primitive_count() == 0 || placements.to_world.empty()) continue;
-    if (!bake_one(m, placements)) return false;
+    if (mesh.has_strands() || mesh.primitive_count() == 0 || placements[m].to_world.empty())
+      continue;
+    if (!bake_one(m, placements[m])) return false;
   }
   return true;
 }
@@ -233,13 +235,16 @@ bool bake_vertices(const Scene& scene, const BakeOptions& options, MeshOccluders
                    const BakeRecords& records, BakeResult& result) {
   result.meshes.resize(scene.meshes.size());
   const TwoSided two_sided(scene, options.sides);
-  return for_each_mesh(scene, options, [&](std::uint32_t m, const Placements& placements) {
+  const auto bake_one = [&](std::uint32_t m, const Placements& placements) {
     BakeTracing tracing = occluders.tracing(m, records);
     const Mesh& mesh = scene.meshes[m];
     auto baked = bake_mesh(mesh, two_sided.triangles(mesh), m, placements, options, tracing);
     if (baked) result.meshes[m] = std::move(*baked);
     return baked.has_value();
-  });
+  };
+  if (!for_each_mesh(scene, options, bake_one)) return false;
+  if (options.placement == BakePlacement::together) join_borders(scene, two_sided, result);
+  return true;
 }
 
 bool bake_texture(const Scene& scene, const BakeOptions& options, MeshOccluders& occluders,

@@ -6,15 +6,18 @@
 
 namespace dapple {
 
-Placements placements_of(const Scene& scene, std::uint32_t mesh, BakePlacement kind) {
+Placements placed_alone() {
   Placements placements;
-  if (kind == BakePlacement::alone) {
-    placements.add(M44f());
-    return placements;
-  }
+  placements.add(M44f());
+  return placements;
+}
+
+std::vector<Placements> placements_by_mesh(const Scene& scene, BakePlacement kind) {
+  if (kind == BakePlacement::alone)
+    return std::vector<Placements>(scene.meshes.size(), placed_alone());
+  std::vector<Placements> placements(scene.meshes.size());
   for (const Instance& instance : scene.instances)
-    if (instance.mesh == mesh && is_invertible(instance.to_world))
-      placements.add(instance.to_world);
+    if (is_invertible(instance.to_world)) placements[instance.mesh].add(instance.to_world);
   return placements;
 }
 

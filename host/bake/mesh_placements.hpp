@@ -7,11 +7,14 @@
 
 namespace dapple {
 
-/// Those of the instances of a mesh whose matrices can be inverted: what is scaled to zero is not
-/// in the scene. Of a mesh alone: the identity.
-Placements placements_of(const Scene& scene, std::uint32_t mesh, BakePlacement kind);
+/// The identity.
+Placements placed_alone();
 
-/// The number of placements_of() each mesh.
+/// By mesh, those of its instances whose matrices can be inverted: what is scaled to zero is not in
+/// the scene. Of meshes alone: the identity.
+std::vector<Placements> placements_by_mesh(const Scene& scene, BakePlacement kind);
+
+/// The number of placements_by_mesh() of each mesh.
 std::vector<std::size_t> placement_counts(const Scene& scene, BakePlacement kind);
 
 /// The number of meshes of triangles that have instances, but none that can be inverted.

@@ -36,7 +36,7 @@ Scene load_scene(const std::string& spec, const SceneOptions& options) {
   refuse_named_animation(spec, options);
   Scene scene = is_procedural ? make_procedural(spec, options.time) : load_hair(spec);
   if (!is_procedural) add_time_warning(spec, options.time, scene);
-  warn_of_unused_radii(spec, options, {}, scene);
+  warn_of_no_lines(spec, options, scene);
   return scene;
 }
 

@@ -38,7 +38,7 @@ class ProceduralSource : public MovingScene::Source {
   }
   [[nodiscard]] Scene at(std::optional<double> seconds) const override {
     Scene scene = make_procedural(name_, seconds);
-    warn_of_unused_radii(name_, options_, {}, scene);
+    warn_of_no_lines(name_, options_, scene);
     return scene;
   }
 
@@ -51,7 +51,7 @@ class HairSource : public MovingScene::Source {
  public:
   HairSource(const std::string& path, const SceneOptions& options)
       : path_(path), scene_(load_hair(path)) {
-    warn_of_unused_radii(path, options, {}, scene_);
+    warn_of_no_lines(path, options, scene_);
   }
   [[nodiscard]] Scene at(std::optional<double> seconds) const override {
     Scene scene = scene_;

@@ -15,14 +15,10 @@ void warn_of_rest(const std::string& spec, Scene& scene) {
   scene.warnings.push_back(one_line(spec + ": has no animations, and stays in its rest pose"));
 }
 
-void warn_of_unused_radii(const std::string& spec, const SceneOptions& options, RadiusUse use,
-                          Scene& scene) {
-  if (!use.lines && options.line_radius > 0)
+void warn_of_no_lines(const std::string& spec, const SceneOptions& options, Scene& scene) {
+  if (options.line_radius > 0)
     scene.warnings.push_back(
         one_line(spec + ": has no glTF lines, and --line-radius changes nothing"));
-  if (!use.point_lights && options.light_radius != SceneOptions().light_radius)
-    scene.warnings.push_back(
-        one_line(spec + ": has no glTF point lights, and --light-radius changes nothing"));
 }
 
 }  // namespace dapple

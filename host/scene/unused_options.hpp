@@ -15,13 +15,7 @@ void refuse_named_animation(const std::string& spec, const SceneOptions& options
 /// Warns that a scene is the same at all times.
 void warn_of_rest(const std::string& spec, Scene& scene);
 
-/// What radii are of in a glTF file; other scenes have neither.
-struct RadiusUse {
-  bool lines = false, point_lights = false;  ///< spots, too
-};
-
-/// Warns of radii that were given for what a scene does not have.
-void warn_of_unused_radii(const std::string& spec, const SceneOptions& options, RadiusUse use,
-                          Scene& scene);
+/// Warns, if lines have a radius, that a scene has no lines.
+void warn_of_no_lines(const std::string& spec, const SceneOptions& options, Scene& scene);
 
 }  // namespace dapple

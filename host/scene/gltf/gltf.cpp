@@ -41,11 +41,6 @@ void warn_of_other_scenes(const tinygltf::Model& model, Scene& scene) {
                   element("scene", shown, model.scenes[shown].name))));
 }
 
-bool has_point_lights(const tinygltf::Model& model) {
-  return std::any_of(model.lights.begin(), model.lights.end(),
-                     [](const tinygltf::Light& light) { return light.type != "directional"; });
-}
-
 }  // namespace
 
 namespace gltf {
@@ -58,9 +53,7 @@ MovingGltf::MovingGltf(const std::string& path, const SceneOptions& options, boo
   for (const std::string& note : document_.notes)
     timeless_.warnings.push_back(one_line(path + ": " + note));
   warn_of_other_scenes(document_.model, timeless_);
-  warn_of_unused_radii(path, options,
-                       {has_any_lines(document_.model), has_point_lights(document_.model)},
-                       timeless_);
+  if (!has_any_lines(document_.model)) warn_of_no_lines(path, options, timeless_);
   timeless_.animations = list_animations(document_);
   for (const auto& node : document_.model.nodes)
     timeless_.node_names.push_back(node.mesh >= 0 ? one_line(node.name) : "");
