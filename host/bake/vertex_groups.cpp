@@ -8,7 +8,6 @@
 #include <bit>
 #include <cmath>
 #include <compare>
-#include <numeric>
 
 #include "bvh/opacity/disjoint_sets.hpp"
 

@@ -154,7 +154,8 @@ std::string failure(const Comparison& comparison, std::optional<double> max_rmse
   }
   if (max_rmse) {
     for (const std::string& name : comparison.only_b) {
-      if (!is_exempt(layer_of(name))) add(fmt::format("{} is only in {}", name, comparison.name_b));
+      if (only_exempt || !is_exempt(layer_of(name)))
+        add(fmt::format("{} is only in {}", name, comparison.name_b));
     }
   }
   if (reasons.empty()) return {};

@@ -1,5 +1,5 @@
 // Reads EXR files: images of dome lights, and films. In: a path. Out: channels of floats, or an
-// Error. Only files/exr_* and film/exr/ use OpenEXR.
+// Error. Only files/exr_* and film/exr/exr_writer.cpp use OpenEXR.
 #pragma once
 
 #include <ImfForward.h>

@@ -130,7 +130,7 @@ void add_sky(Scene& scene, const std::string& kind, float irradiance, double rot
     sky = dome_light("sky", kind);
   }
   sky.radiance *= irradiance;
-  if (!(irradiance >= 0 && sky.radiance.x <= kLargestRadiance))
+  if (!(sky.radiance.x <= kLargestRadiance))
     throw Error(ErrorKind::usage, "irradiance is too large: radiances may be up to 1e30");
   sky.rotation = static_cast<float>(std::remainder(rotation, 360.0) * 3.141592653589793 / 180);
   scene.lights.push_back(sky);

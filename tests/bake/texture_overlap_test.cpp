@@ -2,8 +2,8 @@
 // texture, and what a bake reports of given and of its own coordinates.
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cmath>
+#include <ctime>
 
 #include "bake/texture/texture_layout.hpp"
 #include "bake/texture/uv_overlap.hpp"
@@ -116,13 +116,13 @@ TEST(UvOverlap, ACoordinateOneRoundingOutsideOfTheTextureIsItsBorder) {
   }
 }
 
-TEST(TextureOverlap, OfManyLargeTrianglesIsFoundInACoarserTexture) {
+TEST(UvOverlap, OfManyLargeTrianglesIsFoundInACoarserTexture) {
   const Squares cards = squares_at({std::vector<Rect>(2000, kLeft), {{0.5f, 0, 0.25f, 1}}});
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();
   const UvOverlap overlap = find_overlap(cards.scene, cards.uvs, 4096, BakePlacement::together);
-  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   expect_overlap(overlap, 2.0 / 3, 2.0 / 3, 0);
-  EXPECT_LT(seconds.count(), 10) << "4,000 triangles of 8 million texels each take a minute";
+  EXPECT_LT(seconds, 10) << "4,000 triangles of 8 million texels each take a minute";
 }
 
 /// What a bake of few rays reports of its texture.

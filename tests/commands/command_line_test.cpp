@@ -354,7 +354,9 @@ TEST_F(CommandLine, AProceduralSceneAsAGlbFileRenders) {
   const Outcome made = dapple("scene tree leaves=100 -o tree.glb");
   EXPECT_EQ(made.code, 0) << made.err;
   EXPECT_TRUE(contains(made.out, "wrote tree.glb")) << made.out;
-  EXPECT_EQ(dapple("scene tree leaves=100 -o quiet.glb -q").out, "");
+  const Outcome quiet = dapple("scene tree leaves=100 -o quiet.glb -q");
+  EXPECT_EQ(quiet.code, 0) << quiet.err;
+  EXPECT_EQ(quiet.out, "");
   const Outcome run = dapple(
       "render tree.glb -o tree.exr --opacity leaf=0.5 --ground --width 8 --height 8 --spp 1 -q");
   EXPECT_EQ(run.code, 0) << run.err;

@@ -59,6 +59,19 @@ TEST_F(ResumeOrBegin, KeepsACheckpointOfAnotherSpelling) {
   EXPECT_TRUE(bytes_of(path("a.ckpt.unfit")) == saved);
 }
 
+TEST_F(ResumeOrBegin, KeepsWhatALinkLeadsTo) {
+  ASSERT_EQ(resumed().code, 0);
+  const std::string saved = bytes_of(path("a.ckpt"));
+  std::filesystem::create_symlink("a.ckpt", path("link.ckpt"));
+  const std::string render =
+      "render 'scene:tree?leaves=400' --width 16 --height 12 --spp 8 -o b.exr --checkpoint "
+      "link.ckpt --resume-or-begin a.ckpt";
+  const Outcome run = dapple(render);
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_TRUE(bytes_of(path("a.ckpt.unfit")) == saved);
+  EXPECT_FALSE(std::filesystem::is_symlink(path("a.ckpt.unfit")));
+}
+
 TEST_F(ResumeOrBegin, OtherFailuresLeaveTheCheckpoint) {
   ASSERT_EQ(resumed().code, 0);
   const std::string saved = bytes_of(path("a.ckpt"));

@@ -169,7 +169,7 @@ TEST(CompareFailure, NamesLayerAndFigureAndExemptsDistancesAndCounts) {
   EXPECT_TRUE(contains(failure(only_z, 0.2), "layer Z has RMSE 8"));
 }
 
-TEST(CompareFailure, UnderALimitNamesWhatAOnlyLacks) {
+TEST(CompareFailure, UnderALimitNamesTheLayersThatTheFirstFilmLacks) {
   const std::vector<Plane> planes = {
       {"Z", {1}}, {"ao.R", {1}}, {"ao.back.R", {1}}, {"light.key.R", {1}}, {"motion.X", {1}}};
   const Film all = film_of(1, 1, planes);

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
+#include <ctime>
 #include <vector>
 
 #include "dapple/scene.hpp"
@@ -50,13 +50,15 @@ TEST(LightUpload, LampsOfOneTextureShareItsMipLevels) {
   const Scene scene = masked_lamps();
   std::vector<LightRecord> records;
   std::vector<EmitterTriangle> emitters;
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();
   pack_lights(scene, records, emitters);
-  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   ASSERT_EQ(records.size(), kLamps);
   for (const LightRecord& record : records) EXPECT_NEAR(record.area, 1, 0.03);
-  EXPECT_NEAR(emitters[records[7].first_triangle].vertex[0], 7, 2.001);
-  EXPECT_LT(seconds.count(), 10) << "levels of each lamp's own take a minute";
+  for (const std::size_t lamp : {7, 8})  // of a mesh of its own, of the shared one
+    EXPECT_NEAR(emitters[records[lamp].first_triangle].vertex[0], static_cast<float>(lamp) + 1, 1)
+        << lamp;
+  EXPECT_LT(seconds, 10) << "levels of each lamp's own take a minute";
 }
 
 }  // namespace

@@ -49,6 +49,11 @@ MUTATIONS = [
         "(float)(hash_uint(7u) >> 8)",
         r"^Roulette\."),
     Mutation(
+        "normals-face-the-middle-of-the-lens", "kernels/shading/smooth_point.clh",
+        "to_viewer -= 2.0f * fmin(dot(geometric, to_viewer), 0.0f) * geometric;",
+        "to_viewer -= 0.0f * fmin(dot(geometric, to_viewer), 0.0f) * geometric;",
+        r"^ShadingNormal\."),
+    Mutation(
         "roulette-keeps-what-single-rays-have", "kernels/occlusion/traverse.clh",
         "result.value < min_transmittance ? 0.0f : max(result.value, roulette_floor(params));",
         "result.value < min_transmittance ? 0.0f : result.value;",

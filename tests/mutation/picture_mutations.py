@@ -268,6 +268,28 @@ MUTATIONS = [
         "ao[enclosed.group] = sum(ao, 0.0f);",
         r"^(Bake|BakeClosedForm)\."),
     Mutation(
+        "primitives-share-values-that-differ", "host/commands/bake/file_values.cpp",
+        "if (set.ao[at] != ao_[i] ||",
+        "if (set.ao[at] < 0 ||",
+        r"^BakeCommand\.(Sides|Meshes)"),
+    Mutation(
+        "borders-have-the-last-mesh", "host/bake/mesh_borders.cpp",
+        "ao_ += baked.ao[vertex];",
+        "ao_ = static_cast<float>(count_) * baked.ao[vertex];",
+        r"^MeshBorders\."),
+    Mutation(
+        "hard-edges-between-meshes-are-joined", "host/bake/mesh_borders.cpp",
+        "const VertexGroups groups = group_vertices(around.mesh, around.two_sided);",
+        "VertexGroups groups = group_vertices(around.mesh, around.two_sided);\n"
+        "  groups.of_vertex = places_of_vertices(around.mesh);\n"
+        "  groups.count = groups.of_vertex.size();",
+        r"^MeshBorders\."),
+    Mutation(
+        "unseen-texels-keep-their-colour", "host/device/upload/color_upload.cpp",
+        "if (!levels.empty() && !is_seen(texture, weights, i))",
+        "if (levels.empty() && !is_seen(texture, weights, i))",
+        r"^Albedo\."),
+    Mutation(
         "dilation-from-the-farthest-texel", "host/bake/texture/dilation.cpp",
         "square(source, u, v) < square(nearest[to], u, v)",
         "square(source, u, v) > square(nearest[to], u, v)",

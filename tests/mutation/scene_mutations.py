@@ -4,6 +4,16 @@ from mutation import Mutation
 
 MUTATIONS = [
     Mutation(
+        "matrices-without-padding", "host/scene/gltf/document/accessor.cpp",
+        "layout.column_stride = is_matrix ? (column + 3) / 4 * 4 : column;",
+        "layout.column_stride = column;",
+        r"^BakeCommand\.Matrices"),
+    Mutation(
+        "instances-of-mirrored-skins-are-mirrored", "host/scene/gltf/instance.cpp",
+        "matrices.push_back(is_skinned ? placed.to_world * of_instance",
+        "matrices.push_back(!is_skinned ? placed.to_world * of_instance",
+        r"^(GltfSkin|GltfHierarchy|GltfGeometry)\."),
+    Mutation(
         "emission-of-what-is-cut-out", "host/device/upload/light_upload.cpp",
         "const double area = 0.5 * edge1.cross(edge2).length() * double{opacities[t]};",
         "const double area = 0.5 * edge1.cross(edge2).length() * (opacities[t] > 0 ? 1 : 0);",
@@ -174,7 +184,7 @@ MUTATIONS = [
         r"^(GltfGeometry|LoadScene)\."),
     Mutation(
         "gltf-sparse-values-with-a-stride", "host/scene/gltf/document/accessor.cpp",
-        "return sparse_values_ + at * components_ * component_bytes_;",
+        "return sparse_values_ + at * layout_.stride;",
         "return sparse_values_ + at * stride_;",
         r"^(GltfGeometry|GltfMorph)\."),
     Mutation(

@@ -14,7 +14,6 @@
 #include "dapple/error.hpp"
 #include "dapple/render.hpp"
 #include "dapple/shared/pass_params.h"
-#include "sampling/batch_variance.hpp"
 
 namespace dapple {
 namespace {

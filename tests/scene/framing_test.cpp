@@ -115,6 +115,14 @@ TEST(FrameScene, ALongSceneIsSeenFromItsSide) {
   EXPECT_TRUE(back({9, 5, 1}).equalWithAbsError(V3f(0, 0, 1), 1e-6f));
 }
 
+TEST(LookAt, TakesVectorsWhoseSquaresAreNoFloats) {
+  const Camera near = look_at({0, 0, 3}, {0, 0, 0}, {0, 1, 0}, 1);
+  const Camera far = look_at({0, 0, 3e30f}, {0, 0, 0}, {0, 1e30f, 0}, 1);
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column)
+      EXPECT_EQ(far.to_world[row][column], near.to_world[row][column]);
+}
+
 TEST(FrameScene, ASceneWithoutExtentStillGetsACamera) {
   const Camera camera = frame_scene(Scene{}, 1.5f);
   EXPECT_TRUE(std::isfinite(camera.to_world[3][2]));

@@ -197,6 +197,16 @@ TEST(GlbWriter, InstancesAndCamerasAreNodesWithMatrices) {
   EXPECT_EQ(json["cameras"][0]["perspective"]["yfov"], 0.5);
 }
 
+TEST(GlbWriter, NodesHaveTheNamesThatTheyWereReadWith) {
+  Scene scene = small_scene();
+  scene.node_names = {"", "lamp"};
+  scene.instances[0].node = 1;
+  scene.instances[1].node = 0;
+  const Json nodes = write_and_take_apart(scene).json["nodes"];
+  EXPECT_EQ(nodes[0]["name"], "lamp");
+  EXPECT_EQ(nodes[1]["name"], "pair") << "that of the mesh";
+}
+
 TEST(GlbWriter, VertexAlphaBecomesColoursOnlyWhereTheMaterialUsesIt) {
   Scene scene = small_scene();
   scene.meshes[0].vertex_alpha = {1, 0.5f, 0.25f, 0};

@@ -34,7 +34,7 @@ struct PartSums {
   double area = 0;
   [[nodiscard]] bool is_closed() const {
     return edges > 0 && static_cast<double>(open) <= kOpenEdges * static_cast<double>(edges) &&
-           vector.length() <= kOpenShare * area;
+           vector.length() <= kMaxOpenArea * area;
   }
 };
 

@@ -46,7 +46,7 @@ void visit_centres(const V2f* uv, std::uint32_t size, Visit visit) {
 /// texels would take seconds: all cards of a forest may show the same texture.
 std::uint32_t affordable_size(const std::vector<std::vector<V2f>>& corners, std::uint32_t size) {
   constexpr double kMostTexels = 1 << 28;  // half a second
-  constexpr std::uint32_t kLeastSize = 64;
+  constexpr std::uint32_t kLeastSize = 8;
   double area = 0;  // of the rectangles around triangles, in textures
   for (const std::vector<V2f>& uvs : corners)
     for (std::size_t i = 0; i < uvs.size(); i += 3) {
@@ -54,7 +54,7 @@ std::uint32_t affordable_size(const std::vector<std::vector<V2f>>& corners, std:
       for (std::size_t k = 0; k < 3; ++k) box.extendBy(uvs[i + k]);
       area += double{box.size().x} * double{box.size().y};
     }
-  while (size > kLeastSize && area * size * size > kMostTexels) size /= 2;
+  while (size >= 2 * kLeastSize && area * size * size > kMostTexels) size /= 2;
   return size;
 }
 

@@ -14,7 +14,9 @@ struct SurfaceSum {
   Imath::V3d vector{0, 0, 0};  ///< of area vectors
   double area = 0;
 
-  [[nodiscard]] bool is_closed() const { return vector.length() <= kOpenShare * area; }
+  [[nodiscard]] bool is_closed() const {
+    return area > 0 && vector.length() <= kMaxOpenArea * area;
+  }
 };
 
 /// Of each connected surface, by its root.

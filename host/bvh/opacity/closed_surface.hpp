@@ -10,12 +10,12 @@
 
 namespace dapple {
 
-/// Maximum length of the sum of a closed surface's area vectors, relative to its area: up to a tube
-/// five times as long as its radius with an open end.
-inline constexpr double kOpenShare = 0.1;
+/// Maximum length of the sum of a closed surface's area vectors, relative to its area: a tube with
+/// an open end counts if it is five times as long as its radius.
+inline constexpr double kMaxOpenArea = 0.1;
 
 /// Returns which triangles of the mesh belong to closed surfaces: connected components of opaque
-/// triangles whose sum of area vectors is short (kOpenShare), so that twigs with open ends count.
+/// triangles whose sum of area vectors is short (kMaxOpenArea), so that twigs with open ends count.
 /// Triangles are connected by vertices; those of open
 /// components also by edges whose ends are at equal positions (`welded`, of welded_vertices()),
 /// since exporters split vertices at seams and where shading is flat. One entry a triangle of the

@@ -22,7 +22,7 @@ void add_opacity_option(CLI::App& app, std::vector<std::string>& opacity);
 void add_ao_range_options(CLI::App& app, float& distance, float& falloff);
 
 /// `flag`, such as --dome-rotation: degrees
-/// `what` turns, for the help.
+/// `what`: the thing that turns, for the help.
 void add_rotation_option(CLI::App& app, const std::string& flag, const char* what, double& degrees);
 
 /// Light::rotation for so many degrees; throws Error usage, naming `flag`, if they are not finite.

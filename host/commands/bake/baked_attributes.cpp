@@ -4,9 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
-#include <set>
+#include <utility>
 
 #include "bake/samples/surface_samples.hpp"
 #include "commands/bake/file_values.hpp"
@@ -222,11 +221,12 @@ std::vector<NewAttribute> baked_attributes(const SourceFile& file, const Scene& 
     const VertexValues& baked = values.sets.at(set.first)[set.second];
     const auto push = [&](NewAttribute attribute) {
       attribute.shared = shared;
+      std::vector<float> stored = std::move(attribute.values);
       for (const auto& [mesh, number] : primitives) {
         attribute.mesh = mesh;
         attribute.primitive = number;
         attributes.push_back(attribute);
-        attribute.values.clear();  // the first one's are stored for all
+        attributes.back().values = std::exchange(stored, {});  // the first one's count for all
       }
     };
     push(ao_attribute(file, primitives.front(), baked, targets));

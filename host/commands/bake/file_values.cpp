@@ -19,11 +19,12 @@ class PrimitiveValues {
     ao_.resize(source_.count);
     if (!like.bent.empty()) bent_.resize(source_.count, V3f(0, 0, 0));
     light_.assign(like.light.size(), std::vector<V3f>(source_.count, V3f(0, 0, 0)));
-    for (const Use& use : uses) add(use, 1 / static_cast<float>(uses.size()));
+    for (const Use& use : uses) add(use);
+    divide(static_cast<float>(uses.size()));
   }
 
   /// Whether `set` has the same values where it has some.
-  [[nodiscard]] bool fit(const VertexValues& set) const {
+  [[nodiscard]] bool agrees_with(const VertexValues& set) const {
     for (std::uint32_t i = 0; i < source_.count; ++i) {
       const std::uint32_t at = vertex(i);
       if (!set.taken[at]) continue;
@@ -59,14 +60,21 @@ class PrimitiveValues {
     return source_.used.empty() ? i : source_.used[i];
   }
 
-  void add(const Use& use, float weight) {
+  void add(const Use& use) {
     for (std::uint32_t i = 0; i < source_.count; ++i) {
       const std::uint32_t from = use.source->first + i;
-      ao_[i] += weight * use.baked->ao[from];
-      if (!bent_.empty()) bent_[i] += weight * use.baked->bent[from];
-      for (std::size_t l = 0; l < light_.size(); ++l)
-        light_[l][i] += weight * use.baked->light[l][from];
+      ao_[i] += use.baked->ao[from];
+      if (!bent_.empty()) bent_[i] += use.baked->bent[from];
+      for (std::size_t l = 0; l < light_.size(); ++l) light_[l][i] += use.baked->light[l][from];
     }
+  }
+
+  /// Equal values have themselves as their mean, to the bit.
+  void divide(float count) {
+    for (float& value : ao_) value /= count;
+    for (V3f& value : bent_) value /= count;
+    for (std::vector<V3f>& of_light : light_)
+      for (V3f& value : of_light) value /= count;
   }
 
   const VertexSource& source_;
@@ -91,8 +99,9 @@ FileValues file_values(const gltf::SourceFile& file, const Scene& scene,
     const gltf::VertexKey key = file.vertex_key(mesh, number, attribute);
     const PrimitiveValues values(of_primitive);
     std::vector<VertexValues>& sets = result.sets[key];
-    const auto set = std::find_if(sets.begin(), sets.end(),
-                                  [&](const VertexValues& other) { return values.fit(other); });
+    const auto set = std::find_if(sets.begin(), sets.end(), [&](const VertexValues& other) {
+      return values.agrees_with(other);
+    });
     result.primitives[primitive] = {key, static_cast<std::size_t>(set - sets.begin())};
     if (set == sets.end()) sets.push_back(values.empty_set(file.vertex_count(mesh, number)));
     values.put_into(sets[result.primitives[primitive].second]);

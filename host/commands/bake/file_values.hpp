@@ -17,7 +17,8 @@ namespace dapple {
 /// A primitive of the file, by its mesh and its number there.
 using FilePrimitive = std::pair<std::uint32_t, std::uint32_t>;
 
-/// Values of all vertices of a POSITION accessor. Those that nothing uses have AO 1, and 0 else.
+/// Values of all vertices of a POSITION accessor. Vertices that no primitive uses have AO 1, and
+/// bent normals and light of 0.
 struct VertexValues {
   std::vector<float> ao;
   std::vector<V3f> bent;                ///< means of directions; empty without bent normals

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -15,17 +17,20 @@ class PlacementNodes {
   explicit PlacementNodes(gltf::SourceFile& file) : file_(file) {}
 
   /// Whether the instances of a node stay together: nodes of a skin have no places of their own.
-  [[nodiscard]] bool keeps_instances(int node) const {
+  /// A mesh without joints is not skinned.
+  [[nodiscard]] bool keeps_instances(int node, const VertexSource& source) const {
     const auto in_file = static_cast<std::uint32_t>(node);
-    return file_.has_gpu_instances(in_file) && file_.has_skin(in_file);
+    const std::vector<std::string> names = file_.attributes(source.mesh, source.primitive);
+    return file_.has_gpu_instances(in_file) && file_.has_skin(in_file) &&
+           std::find(names.begin(), names.end(), "JOINTS_0") != names.end();
   }
 
   /// Of the next placement of `mesh`, of the scene, by a node of the file; -1 if it has none.
-  int next(int node, std::uint32_t mesh) {
+  int next(int node, std::uint32_t mesh, bool stays) {
     auto split = split_.find(node);
     if (split == split_.end()) {
       const auto in_file = static_cast<std::uint32_t>(node);
-      if (!file_.has_gpu_instances(in_file) || keeps_instances(node)) return node;
+      if (!file_.has_gpu_instances(in_file) || stays) return node;
       if (file_.has_instance_features(in_file)) ++without_features_;
       split = split_.emplace(node, file_.split_gpu_instances(in_file)).first;
     }
@@ -61,6 +66,7 @@ void make_meshes_unique(gltf::SourceFile& file, Scene& scene) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> copies;  // by node and mesh
   std::vector<bool> shown(scene.meshes.size());
   std::map<std::pair<int, std::uint32_t>, std::uint32_t> kept;  // meshes of instances that stay
+  std::set<int> nodes_with_instances;
   PlacementNodes nodes(file);
   for (Instance& instance : scene.instances) {
     const std::uint32_t mesh = instance.mesh;
@@ -71,8 +77,8 @@ void make_meshes_unique(gltf::SourceFile& file, Scene& scene) {
       continue;
     }
     const std::uint32_t in_file = scene.meshes[mesh].sources[0].mesh;
-    const bool stays = nodes.keeps_instances(instance.node);
-    const int placed = nodes.next(instance.node, mesh);
+    const bool stays = nodes.keeps_instances(instance.node, scene.meshes[mesh].sources[0]);
+    const int placed = nodes.next(instance.node, mesh, stays);
     instance.node = placed < 0 ? kLeftOut : placed;
     if (placed < 0) continue;
     const auto node = static_cast<std::uint32_t>(placed);
@@ -87,14 +93,16 @@ void make_meshes_unique(gltf::SourceFile& file, Scene& scene) {
       scene.meshes.push_back(Mesh(scene.meshes[mesh]));
       for (VertexSource& source : scene.meshes.back().sources) source.mesh = copy->second;
     }
-    if (stays) kept[{placed, mesh}] = instance.mesh;
+    if (!stays) continue;
+    kept[{placed, mesh}] = instance.mesh;
+    nodes_with_instances.insert(placed);
   }
   remove_left_out(scene);
   if (!kept.empty())
     scene.warnings.push_back(fmt::format(
         "{}: skinned meshes with EXT_mesh_gpu_instancing keep it: a skin's nodes have no places, "
         "so the instances of each share their values ({} of them)",
-        scene.source, kept.size()));
+        scene.source, nodes_with_instances.size()));
   if (nodes.without_features() > 0)
     scene.warnings.push_back(fmt::format(
         "{}: EXT_instance_features of instances that became nodes is left out ({} of them)",

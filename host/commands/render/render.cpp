@@ -61,11 +61,11 @@ std::string name_aside(const std::string& file) {
 /// Says that the render begins anew, and moves a checkpoint aside that its own would replace.
 void set_checkpoint_aside(const Error& error, const RenderArguments& a) {
   std::string kept;
-  if (!a.checkpoint.empty() && std::filesystem::exists(a.checkpoint) &&
-      std::filesystem::equivalent(a.checkpoint, a.resume_or_begin)) {
+  const std::filesystem::path resumed = std::filesystem::weakly_canonical(a.resume_or_begin);
+  if (!a.checkpoint.empty() && std::filesystem::weakly_canonical(a.checkpoint) == resumed) {
     const std::string aside = name_aside(a.resume_or_begin);
     std::error_code failure;
-    std::filesystem::rename(a.checkpoint, aside, failure);
+    std::filesystem::rename(resumed, aside, failure);  // not a link to it
     if (failure)
       throw Error(ErrorKind::failed,
                   fmt::format("--resume-or-begin {}: does not fit, and cannot be moved to {}: {}",

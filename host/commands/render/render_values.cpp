@@ -95,8 +95,6 @@ void check_effects(const RenderArguments& a, const RenderOptions& o) {
   need(o.ao_distance > 0, "--ao-distance", o.ao, "the pass ao");
   need(o.roulette != defaults.roulette, "--roulette", o.estimator == Estimator::exact,
        "--estimator exact");
-  need(o.footprint != defaults.footprint, "--footprint", o.estimator == Estimator::prefiltered,
-       "--estimator prefiltered");
   need(o.max_spp != defaults.max_spp, "--max-spp", is_adaptive(o),
        "--target-rmse or --target-error");
   need(a.animate_seed, "--animate-seed", !a.frames.empty(), "--frames");

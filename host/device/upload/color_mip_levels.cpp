@@ -115,7 +115,14 @@ TexelWeights texel_weights(const Material& material) {
   return {TexelWeights::Kind::cut_out, least};
 }
 
-std::vector<ColorLevel> color_mip_levels(const ColorTexture& texture, const TexelWeights& weights) {
+TexelWeights weights_of_seen(const ColorTexture& texture, const TexelWeights& weights) {
+  for (std::size_t i = 0; i < texture.rgb.size() / 3; ++i)
+    if (weight_of(texture, weights, i) > 0) return weights;
+  return {};
+}
+
+std::vector<ColorLevel> color_mip_levels(const ColorTexture& texture, const TexelWeights& given) {
+  const TexelWeights weights = weights_of_seen(texture, given);
   std::vector<WeightedLevel> sums{{texture.width, texture.height, {}, {}}};
   while (sums.back().width > 1 || sums.back().height > 1) {
     const WeightedLevel& finer = sums.back();
@@ -126,8 +133,6 @@ std::vector<ColorLevel> color_mip_levels(const ColorTexture& texture, const Texe
                            return WeightedTexel{finer.color[i], finer.weight[i]};
                          }));
   }
-  const bool any_seen = sums.size() == 1 || sums.back().weight[0] > 0;
-  if (!any_seen) return color_mip_levels(texture, {});
   std::vector<ColorLevel> levels(sums.size() - 1);
   for (std::size_t k = levels.size(); k-- > 0;) {
     const WeightedLevel& sum = sums[k + 1];

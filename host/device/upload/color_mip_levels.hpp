@@ -37,6 +37,9 @@ TexelWeights texel_weights(const Material& material);
 /// al., "The Lumigraph", 1996). Where none is seen all count the same.
 std::vector<ColorLevel> color_mip_levels(const ColorTexture& texture, const TexelWeights& weights);
 
+/// `weights`, or equal ones if no texel of the texture would be seen.
+TexelWeights weights_of_seen(const ColorTexture& texture, const TexelWeights& weights);
+
 /// Whether a texel counts at all.
 bool is_seen(const ColorTexture& texture, const TexelWeights& weights, std::size_t texel);
 

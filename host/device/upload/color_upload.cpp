@@ -43,7 +43,8 @@ uint packed(const V3f& linear) {
 
 /// Appends the texture and its mip levels. Returns where each begins.
 std::vector<uint> pack_levels(const Scene& scene, const ColorTexture& texture,
-                              const TexelWeights& weights, std::vector<uint>& texels) {
+                              const TexelWeights& of_material, std::vector<uint>& texels) {
+  const TexelWeights weights = weights_of_seen(texture, of_material);
   std::vector<uint> offsets;
   const auto begin = [&] {
     if (texels.size() >= std::numeric_limits<uint>::max()) refuse_size(scene, "texels");

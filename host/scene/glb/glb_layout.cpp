@@ -42,12 +42,12 @@ float largest_channel(const V3f& color) { return std::max({color.x, color.y, col
 
 /// Which materials emit from an instance: lights that were taken out of the scene stay out.
 std::vector<bool> shining_materials(const Scene& scene) {
-  std::vector<bool> shining(scene.materials.size());
-  for (const Instance& instance : scene.instances) {
-    if (instance.light < 0) continue;
-    for (const std::uint32_t material : scene.meshes[instance.mesh].materials)
-      shining.at(material) = true;
-  }
+  std::vector<bool> shining(scene.materials.size()), shows(scene.meshes.size());
+  for (const Instance& instance : scene.instances)
+    if (instance.light >= 0) shows[instance.mesh] = true;
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m)
+    for (std::size_t i = 0; shows[m] && i < scene.meshes[m].materials.size(); ++i)
+      shining.at(scene.meshes[m].materials[i]) = true;
   return shining;
 }
 

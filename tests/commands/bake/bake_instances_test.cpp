@@ -213,7 +213,7 @@ TEST_F(BakeCommand, ExtrasOfInstancesThatAreNotObjectsAreKept) {
                        "as extras.value (2 of them)\n"))
       << run.err;
   EXPECT_TRUE(
-      contains(run.err, "note: node 3 had such values in its extras, which are replaced\n"));
+      contains(run.err, "note: node 3 had baked values in its extras, which are replaced\n"));
   const json nodes = document("out.glb")["nodes"];
   for (const json& node : nodes) EXPECT_TRUE(node["extras"].contains("ao")) << node;
   EXPECT_EQ(nodes[0]["extras"]["value"], "tall");

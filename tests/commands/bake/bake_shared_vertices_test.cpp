@@ -111,6 +111,31 @@ TEST_F(BakeCommand, MeshesThatUseOtherVerticesOfOneBufferShareTheirValues) {
   }
 }
 
+// Poses of a mesh are means of equal values: in the open these stay 1, to the bit.
+TEST_F(BakeCommand, MeansOfManyPosesInTheOpenAreOne) {
+  GltfBuilder builder = rich_triangle();
+  json& primitive = builder.doc["meshes"][0]["primitives"][0];
+  const int shift = builder.add_positions({0, 0, 0, 0.1f, 0, 0, 0, 0.1f, 0});
+  builder.doc["accessors"][shift]["min"] = {0, 0, 0};
+  builder.doc["accessors"][shift]["max"] = {0.1f, 0.1f, 0};
+  primitive["targets"] = {{{"POSITION", shift}}};
+  builder.doc["nodes"] = json::array();
+  json nodes = json::array();
+  for (int i = 0; i < 11; ++i) {
+    nodes.push_back(i);
+    builder.add("nodes", {{"mesh", 0}, {"translation", {9 * i, 0, 0}}, {"weights", {0.05 * i}}});
+  }
+  builder.doc["scenes"] = {{{"nodes", nodes}}};
+  write("in.glb", builder.glb());
+  const Outcome run = dapple("bake in.glb -o out.glb --rays 8");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const test::GltfData file(path("out.glb"));
+  const json& color = file.doc["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"];
+  EXPECT_EQ(file.accessor(color)["componentType"], test::kUint16);
+  ASSERT_EQ(file.floats(color).size(), 9u);
+  for (const float value : file.floats(color)) EXPECT_EQ(value, 1);
+}
+
 // A sheet that faces up, and down to a floor: each side has a primitive, and both the same
 // vertices.
 TEST_F(BakeCommand, SidesOfASheetThatShareVerticesHaveValuesOfTheirOwn) {
@@ -130,8 +155,12 @@ TEST_F(BakeCommand, SidesOfASheetThatShareVerticesHaveValuesOfTheirOwn) {
   ASSERT_EQ(run.code, 0) << run.err;
   const test::GltfData file(path("out.glb"));
   const json& sides = file.doc["meshes"][0]["primitives"];
-  for (const float ao : file.floats(sides[0]["attributes"]["_AO"])) EXPECT_GT(ao, 0.99f);
-  for (const float ao : file.floats(sides[1]["attributes"]["_AO"])) EXPECT_LT(ao, 0.1f);
+  const std::vector<float> up = file.floats(sides[0]["attributes"]["_AO"]),
+                           down = file.floats(sides[1]["attributes"]["_AO"]);
+  ASSERT_EQ(up.size(), 4u);
+  ASSERT_EQ(down.size(), 4u);
+  for (const float ao : up) EXPECT_GT(ao, 0.99f);
+  for (const float ao : down) EXPECT_LT(ao, 0.1f);
 }
 
 // The second primitive has more indices than there are vertices, and does not use those of the

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "scene/gltf/document/extension_names.hpp"
@@ -87,6 +88,7 @@ void add_attributes(Editor& editor, const std::vector<NewAttribute>& attributes)
 
 std::vector<std::string> add_node_values(Editor& editor, const std::vector<NodeValues>& nodes) {
   Found kept, replaced;
+  std::set<std::uint32_t> noted;
   for (const NodeValues& values : nodes) {
     Json& node = editor.json()["nodes"][values.node];
     if (has_extension(node, extension::kInstancing)) {
@@ -99,14 +101,15 @@ std::vector<std::string> add_node_values(Editor& editor, const std::vector<NodeV
     } else {
       const std::string who = element("node", values.node, node.value("name", ""));
       kept.add(keep_other_extras(node) ? 1 : 0, who);
-      replaced.add(node["extras"].contains(values.extra) ? 1 : 0, who);
+      if (node["extras"].contains(values.extra) && noted.insert(values.node).second)
+        replaced.add(1, who);
       Json& extra = node["extras"][values.extra];
       extra = values.values;
       if (values.components == 1) extra = values.values.at(0);
     }
   }
   return {kept.note("has extras that are not an object; they are kept as extras.value"),
-          replaced.note("had such values in its extras, which are replaced")};
+          replaced.note("had baked values in its extras, which are replaced")};
 }
 
 }  // namespace dapple::gltf

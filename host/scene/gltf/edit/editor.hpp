@@ -43,7 +43,7 @@ class Editor {
 
  private:
   [[nodiscard]] bool is_glb_out() const;
-  /// Whether a buffer is the binary chunk of a GLB file. Another one may lie there unused.
+  /// Whether a buffer is the binary chunk of a GLB file. The chunk is unused if buffer 0 has a uri.
   [[nodiscard]] bool has_binary() const;
   [[nodiscard]] bool has_no_buffer_files() const;
   [[nodiscard]] std::string side_name() const;
