@@ -65,10 +65,13 @@ void set_checkpoint_aside(const Error& error, const RenderArguments& a) {
   if (!a.checkpoint.empty() && std::filesystem::weakly_canonical(a.checkpoint) == resumed) {
     const std::string aside = name_aside(a.resume_or_begin);
     std::error_code failure;
-    std::filesystem::rename(resumed, aside, failure);  // not a link to it
+    if (std::filesystem::is_symlink(a.checkpoint))  // it must lead somewhere to be written
+      std::filesystem::copy_file(resumed, aside, failure);
+    else
+      std::filesystem::rename(resumed, aside, failure);
     if (failure)
       throw Error(ErrorKind::failed,
-                  fmt::format("--resume-or-begin {}: does not fit, and cannot be moved to {}: {}",
+                  fmt::format("--resume-or-begin {}: does not fit, and cannot be kept as {}: {}",
                               a.resume_or_begin, aside, failure.message()));
     kept = ", keeps the checkpoint as " + aside;
   }
