@@ -8,6 +8,7 @@
 
 #include "bake/samples/surface_samples.hpp"
 #include "bake/texture/texture_layout.hpp"
+#include "bake/texture/uv_overlap.hpp"
 #include "sampling/random_choice.hpp"
 #include "support/scenes/scene_on_device.hpp"
 
@@ -15,6 +16,49 @@ namespace dapple {
 namespace {
 
 using namespace scene_test;
+
+/// A sphere of two poles whose quads are two triangles each, also where they touch a pole: one of
+/// them has no area there, unless `whole` leaves these out.
+Mesh sphere(bool whole) {
+  constexpr std::uint32_t kRings = 8, kSides = 12;
+  Mesh mesh;
+  for (std::uint32_t ring = 0; ring <= kRings; ++ring)
+    for (std::uint32_t side = 0; side <= kSides; ++side) {
+      const double down = kPi * ring / kRings, around = 2 * kPi * (side % kSides) / kSides;
+      const double radius = ring % kRings == 0 ? 0 : std::sin(down);
+      mesh.positions.emplace_back(radius * std::cos(around), std::cos(down),
+                                  radius * std::sin(around));
+    }
+  for (std::uint32_t ring = 0; ring < kRings; ++ring)
+    for (std::uint32_t side = 0; side < kSides; ++side) {
+      const std::uint32_t a = ring * (kSides + 1) + side, b = a + kSides + 1;
+      if (ring > 0 || whole) mesh.indices.insert(mesh.indices.end(), {a, a + 1, b});
+      if (ring + 1 < kRings || whole) mesh.indices.insert(mesh.indices.end(), {a + 1, b + 1, b});
+    }
+  mesh.materials.resize(mesh.indices.size() / 3);
+  return mesh;
+}
+
+TEST(Seams, TrianglesWithoutAreaChangeNothing) {
+  std::size_t charts[2], points[2];
+  for (const bool whole : {false, true}) {
+    Scene scene;
+    scene.meshes = {sphere(whole)};
+    scene.materials.resize(1);
+    scene.instances.resize(1);
+    BakeOptions options;
+    options.texture_size = 128;
+    const TextureLayout layout = make_layout(scene, options);
+    for (const V2f& corner : layout.corners[0]) {
+      EXPECT_TRUE(corner.x > 0 && corner.x < 1 && corner.y > 0 && corner.y < 1) << whole;
+    }
+    EXPECT_EQ(find_overlap(layout.corners, 128).share, 0) << whole;
+    charts[whole ? 1 : 0] = layout.charts;
+    points[whole ? 1 : 0] = seam_points(scene.meshes[0], layout.corners[0], 128).size();
+  }
+  EXPECT_EQ(charts[0], charts[1]);
+  EXPECT_EQ(points[0], points[1]);
+}
 
 TEST(Seams, LookupsFromBothSidesAgreeAndOtherTexelsStay) {
   // A tube of 24 sides: its charts meet along smooth edges.

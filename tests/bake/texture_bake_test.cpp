@@ -7,6 +7,7 @@
 #include "dapple/bake.hpp"
 #include "dapple/error.hpp"
 #include "support/scenes/scene_on_device.hpp"
+#include "support/scenes/smooth_shapes.hpp"
 
 namespace dapple {
 namespace {
@@ -57,6 +58,28 @@ TEST(BakeTexture, TexelsInsideClosedGeometryHaveTheNearestValueWhateverTheMargin
       EXPECT_GT(result.texture.ao[y * 64 + x], 0.02f) << x << ", " << y;
     }
   }
+}
+
+// Look-ups at seams read texels beside the charts.
+TEST(BakeTexture, TheMarginChangesNoTexelThatTrianglesCover) {
+  const Scene scene = test::scene_of(test::smooth_sphere());
+  Mesh below;
+  append_grid(below, V3f(-9, scene_bounds(scene).min.y, -9), {0, 0, 18}, {18, 0, 0}, 1, 0);
+  const Scene floor = scene_of(below);
+  BakeOptions options = into_texture(64);
+  options.target_error = 0;
+  options.rays = 64;
+  options.margin = 0;
+  const BakedTexture without = bake(scene, options, {}, {floor}).texture;
+  options.margin = 1;
+  const BakedTexture with = bake(scene, options, {}, {floor}).texture;
+  std::size_t covered = 0;
+  for (std::size_t i = 0; i < with.ao.size(); ++i) {
+    if (without.ao[i] == 1) continue;
+    EXPECT_EQ(without.ao[i], with.ao[i]) << i;
+    ++covered;
+  }
+  EXPECT_GT(covered, with.ao.size() / 8);
 }
 
 TEST(BakeTexture, AClosedRoomIsDarkThoughPrefilteredRaysSeeALittle) {

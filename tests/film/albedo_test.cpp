@@ -205,6 +205,22 @@ TEST(Albedo, UnseenTexelsHaveTheColourOfWhatIsSeenAroundThem) {
   EXPECT_NEAR(color_mip_levels(texture, kByAlpha).back().color[0].x, 15.0 / (64 * 32), 1e-6);
 }
 
+TEST(Albedo, UnseenTexelsBesideALeafHaveItsColourNotThatOfAnother) {
+  ColorTexture atlas;
+  atlas.width = 64;
+  atlas.height = 4;
+  for (std::size_t i = 0; i < 64 * 4; ++i) {  // red up to 31, green from 48 on
+    const bool red = i % 64 < 32, green = i % 64 >= 48;
+    atlas.rgb.insert(atlas.rgb.end(), {static_cast<std::uint8_t>(red ? 255 : 0),
+                                       static_cast<std::uint8_t>(green ? 255 : 0), 0});
+    atlas.alpha.push_back(red || green ? 255 : 0);
+  }
+  const ColorLevel first = color_mip_levels(atlas, kByAlpha).at(0);
+  EXPECT_EQ(color_of_unseen(atlas, kByAlpha, first, 32), V3f(1, 0, 0));
+  EXPECT_EQ(color_of_unseen(atlas, kByAlpha, first, 47), V3f(0, 1, 0));
+  EXPECT_EQ(first.color[16], V3f(1, 0, 0)) << "texels 32 and 33";
+}
+
 // Between a leaf and what is cut out around it half of a look-up is of texels that are not seen.
 TEST(Albedo, WhatIsCutOutDoesNotColourTheRim) {
   for (const AlphaMode mode : {AlphaMode::mask, AlphaMode::blend}) {

@@ -42,6 +42,7 @@ class Neighbours {
     std::vector<Edge> edges;
     edges.reserve(mesh.indices.size());
     for (std::uint32_t t = 0; t < of_.size(); ++t) {
+      if (!has_area(mesh, t)) continue;  // its neighbours are those of each other
       for (std::uint32_t k = 0; k < 3; ++k) {
         const std::uint64_t a = groups.of_vertex[mesh.indices[3 * t + k]];
         const std::uint64_t b = groups.of_vertex[mesh.indices[3 * t + (k + 1) % 3]];

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bake/samples/surface_samples.hpp"
 #include "bake/vertex_groups.hpp"
 
 namespace dapple {
@@ -30,6 +31,7 @@ std::vector<TriangleEdge> sorted_edges(const Mesh& mesh) {
   std::vector<TriangleEdge> edges;
   edges.reserve(mesh.indices.size());
   for (std::uint32_t t = 0; t < mesh.primitive_count(); ++t) {
+    if (!has_area(mesh, t)) continue;  // its neighbours are those of each other
     for (std::uint8_t k = 0; k < 3; ++k) {
       const std::uint64_t a = groups.of_vertex[mesh.indices[3 * t + k]];
       const std::uint64_t b = groups.of_vertex[mesh.indices[3 * t + (k + 1u) % 3]];

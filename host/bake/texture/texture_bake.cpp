@@ -232,6 +232,15 @@ void TextureBake::fill_enclosed_texels(BakeStatistics& statistics) {
       std::min(statistics.enclosed_texels, static_cast<std::size_t>(left));
 }
 
+void TextureBake::clear_beyond_margin() {
+  for (std::size_t i = 0; i < known_.size(); ++i) {
+    if (covered_[i] || (known_[i] && options_.margin > 0)) continue;
+    texture_.ao[i] = 1;
+    if (options_.bent) texture_.bent[i] = V3f(0, 0, 0);
+    for (std::vector<V3f>& light : texture_.light) light[i] = V3f(0, 0, 0);
+  }
+}
+
 BakedTexture TextureBake::finish(BakeStatistics& statistics) {
   for (std::size_t i = 0; i < known_.size(); ++i) {
     if (!known_[i]) continue;
@@ -240,10 +249,10 @@ BakedTexture TextureBake::finish(BakeStatistics& statistics) {
     for (std::vector<V3f>& light : texture_.light) light[i] /= weight_[i];
   }
   fill_enclosed_texels(statistics);
-  take_nearest(nearest_valid(known_, texture_.size, options_.margin), false);
-  for (std::size_t i = 0; i < known_.size(); ++i)
-    if (!known_[i] && !covered_[i]) texture_.ao[i] = 1;
+  // Look-ups at seams read one texel beyond what is covered.
+  take_nearest(nearest_valid(known_, texture_.size, std::max(1, options_.margin)), false);
   join_all_seams();
+  clear_beyond_margin();
   const auto covered = std::count(covered_.begin(), covered_.end(), true);
   texture_.coverage = static_cast<double>(covered) / static_cast<double>(covered_.size());
   texture_.overlap = find_overlap(texture_.layout.corners, texture_.size).share;

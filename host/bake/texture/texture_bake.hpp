@@ -28,6 +28,7 @@ class TextureBake {
   /// Texels inside closed geometry take the nearest value of their charts. Charts that lie inside
   /// as a whole are never seen, and stay black.
   void fill_enclosed_texels(BakeStatistics& statistics);
+  void clear_beyond_margin();
   void join_all_seams();
   void add_values(const SampledTexels& texels, const std::vector<PlaceValue>& values,
                   const std::vector<std::vector<V3f>>& light, BakeStatistics& statistics);

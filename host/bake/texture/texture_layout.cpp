@@ -96,6 +96,22 @@ Packing pack_charts(const PlacedCharts& charts, const BakeOptions& options) {
   return pack(sizes, options.texture_size, gap);
 }
 
+/// Triangles without a chart are a point in the texture, too: that of another triangle with one of
+/// their vertices, or 0, 0.
+void place_triangles_without_area(const Mesh& mesh, std::size_t m, TextureLayout& layout) {
+  std::vector<std::optional<V2f>> of_vertex(mesh.positions.size());
+  std::vector<V2f>& corners = layout.corners[m];
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    if (layout.chart_of[m][i / 3] != TextureLayout::kNoChart)
+      of_vertex[mesh.indices[i]] = corners[i];
+  for (std::size_t t = 0; t < mesh.primitive_count(); ++t) {
+    if (layout.chart_of[m][t] != TextureLayout::kNoChart) continue;
+    V2f point(0, 0);
+    for (std::size_t k = 0; k < 3; ++k) point = of_vertex[mesh.indices[3 * t + k]].value_or(point);
+    std::fill_n(corners.begin() + static_cast<std::ptrdiff_t>(3 * t), 3, point);
+  }
+}
+
 /// The texture coordinates of the vertices of mesh `m`. Throws Error usage unless each has some, in
 /// [0,1] where triangles use it.
 const std::vector<V2f>& given_uvs(const Scene& scene, const BakeOptions& options, std::size_t m) {
@@ -162,7 +178,7 @@ TextureLayout make_layout(const Scene& scene, const BakeOptions& options) {
   layout.chart_of.resize(scene.meshes.size());
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
     if (!textured[m]) continue;
-    layout.corners[m].resize(scene.meshes[m].indices.size());
+    layout.corners[m].resize(scene.meshes[m].indices.size(), V2f(0, 0));
     layout.chart_of[m].resize(scene.meshes[m].primitive_count(), TextureLayout::kNoChart);
   }
   for (std::uint32_t c = 0; c < charts.size(); ++c) {
@@ -177,6 +193,8 @@ TextureLayout make_layout(const Scene& scene, const BakeOptions& options) {
             (first + chart.corners[3 * t + k] * (scale * packing.scale)) / static_cast<float>(size);
     }
   }
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m)
+    if (textured[m]) place_triangles_without_area(scene.meshes[m], m, layout);
   return layout;
 }
 

@@ -6,17 +6,10 @@
 #include <array>
 #include <cmath>
 
+#include "scene/images/wrapped_texel.hpp"
+
 namespace dapple {
 namespace {
-
-int wrap(int cell, int size, Wrap mode) {
-  if (cell >= 0 && cell < size) return cell;
-  if (mode == Wrap::clamp) return std::clamp(cell, 0, size - 1);
-  const int period = mode == Wrap::mirror ? 2 * size : size;
-  int r = cell % period;
-  if (r < 0) r += period;
-  return r < size ? r : period - 1 - r;
-}
 
 /// The largest whole number that is not above `x`, which has fewer digits than an int.
 int floored(float x) {
@@ -86,9 +79,10 @@ struct Neighbourhood {
     auto to = alpha.begin();
     for (const int row : {y - 1, y, y + 1}) {
       const auto first =
-          static_cast<std::size_t>(wrap(row, height, texture.wrap_t)) * texture.width;
+          static_cast<std::size_t>(wrapped_texel(row, height, texture.wrap_t)) * texture.width;
       for (const int column : {x - 1, x, x + 1}) {
-        const auto at = first + static_cast<std::size_t>(wrap(column, width, texture.wrap_s));
+        const auto at =
+            first + static_cast<std::size_t>(wrapped_texel(column, width, texture.wrap_s));
         *to++ = static_cast<float>(texture.alpha[at]) * (1.0f / 255.0f);
       }
     }
@@ -103,21 +97,38 @@ struct Neighbourhood {
   }
 };
 
-/// The share of a texel's square that is opaque, by the middles of four by four parts.
+/// The share of a line along which alpha runs from `a` to `b` that is opaque.
+float opaque_part(float a, float b, float cutoff) {
+  const float of_a = thresholded(a, cutoff);
+  if (of_a == thresholded(b, cutoff)) return of_a;
+  const float before = (cutoff - a) / (b - a);
+  return of_a > 0 ? before : 1 - before;
+}
+
+/// The share of a texel's square that is opaque: exactly along four lines across the edge.
 float opaque_share(const Texture& texture, int x, int y, float factor, float cutoff) {
-  constexpr int kParts = 4;
+  constexpr int kLines = 4;
   const Neighbourhood around(texture, x, y);
   const auto [least, most] = std::minmax_element(around.alpha.begin(), around.alpha.end());
   if (thresholded(*least * factor, cutoff) == thresholded(*most * factor, cutoff))
     return thresholded(*least * factor, cutoff);
+  float by_x = 0, by_y = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    by_x += std::fabs(around.alpha[3 * i + 2] - around.alpha[3 * i + 1]) +
+            std::fabs(around.alpha[3 * i + 1] - around.alpha[3 * i]);
+    by_y += std::fabs(around.alpha[6 + i] - around.alpha[3 + i]) +
+            std::fabs(around.alpha[3 + i] - around.alpha[i]);
+  }
   float sum = 0;
-  for (int j = 0; j < kParts; ++j)
-    for (int i = 0; i < kParts; ++i)
-      sum += thresholded(around.at((static_cast<float>(i) + 0.5f) / kParts,
-                                   (static_cast<float>(j) + 0.5f) / kParts) *
-                             factor,
-                         cutoff);
-  return sum / (kParts * kParts);
+  for (int line = 0; line < kLines; ++line) {
+    const float beside = (static_cast<float>(line) + 0.5f) / kLines;
+    const auto at = [&](float along) {  // linear from 0 to 0.5 and from there to 1
+      return factor * (by_x >= by_y ? around.at(along, beside) : around.at(beside, along));
+    };
+    const float middle = at(0.5f);
+    sum += opaque_part(at(0), middle, cutoff) + opaque_part(middle, at(1), cutoff);
+  }
+  return sum / (2 * kLines);
 }
 
 }  // namespace
@@ -164,10 +175,12 @@ float OpacityMipLevels::bilinear(const Level& level, V2f uv) const {
   const float y = uv.y * static_cast<float>(level.height) - 0.5f;
   const int left = floored(x), top = floored(y);
   const float fx = x - static_cast<float>(left), fy = y - static_cast<float>(top);
-  const int columns[2] = {wrap(left, level.width, wrap_s_), wrap(left + 1, level.width, wrap_s_)};
+  const int columns[2] = {wrapped_texel(left, level.width, wrap_s_),
+                          wrapped_texel(left + 1, level.width, wrap_s_)};
   const auto of_row = [&](int row) {
     const float* const texels =
-        &level.opacity[static_cast<std::size_t>(wrap(row, level.height, wrap_t_)) * level.width];
+        &level.opacity[static_cast<std::size_t>(wrapped_texel(row, level.height, wrap_t_)) *
+                       level.width];
     return texels[columns[0]] * (1 - fx) + texels[columns[1]] * fx;
   };
   return of_row(top) * (1 - fy) + of_row(top + 1) * fy;

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "scene/images/color.hpp"
+#include "scene/images/wrapped_texel.hpp"
 
 namespace dapple {
 namespace {
@@ -31,19 +32,35 @@ float weight_of(const ColorTexture& texture, const TexelWeights& weights, std::s
   return alpha >= weights.least_seen ? 1 : 0;
 }
 
-/// The texel of `coarse` that covers texel i of a level of this size.
-std::size_t covering(const ColorLevel& coarse, std::uint32_t width, std::uint32_t height,
-                     std::size_t i) {
-  const std::uint64_t x = i % width * coarse.width / width;
-  const std::uint64_t y = i / width * coarse.height / height;
-  return y * coarse.width + x;
-}
-
 WeightedTexel texel_of(const ColorTexture& texture, const TexelWeights& weights, std::size_t i) {
   const std::uint8_t* texel = &texture.rgb[3 * i];
   const auto& linear = linear_of_codes();
   const float weight = weight_of(texture, weights, i);
   return {V3f(linear[texel[0]], linear[texel[1]], linear[texel[2]]) * weight, weight};
+}
+
+/// The colour of a texel of a level that is not seen: the mean of the seen ones beside it, which
+/// look-ups mix it with, else that of the texel of `coarser` that covers it. `texel`: of the level.
+template <class Texel>
+V3f color_of_unseen(const ColorTexture& texture, std::uint32_t width, std::uint32_t height,
+                    const Texel& texel, const ColorLevel& coarser, std::size_t i) {
+  const auto x = static_cast<int>(i % width), y = static_cast<int>(i / width);
+  WeightedTexel sum{V3f(0, 0, 0), 0};
+  for (int row = y - 1; row <= y + 1; ++row) {
+    for (int column = x - 1; column <= x + 1; ++column) {
+      const auto at_row =
+          static_cast<std::size_t>(wrapped_texel(row, static_cast<int>(height), texture.wrap_t));
+      const auto at_column =
+          static_cast<std::size_t>(wrapped_texel(column, static_cast<int>(width), texture.wrap_s));
+      const WeightedTexel beside = texel(at_row * width + at_column);
+      sum.color += beside.color;
+      sum.weight += beside.weight;
+    }
+  }
+  if (sum.weight > 0) return sum.color / sum.weight;
+  const std::uint64_t above_x = static_cast<std::uint64_t>(x) * coarser.width / width;
+  const std::uint64_t above_y = static_cast<std::uint64_t>(y) * coarser.height / height;
+  return coarser.color[above_y * coarser.width + above_x];
 }
 
 /// Texels of a finer level that a coarse one covers along a side, and how much of them.
@@ -138,10 +155,11 @@ std::vector<ColorLevel> color_mip_levels(const ColorTexture& texture, const Texe
     const WeightedLevel& sum = sums[k + 1];
     ColorLevel& level = levels[k];
     level = {sum.width, sum.height, std::vector<V3f>(sum.color.size())};
+    const auto texel = [&](std::size_t i) { return WeightedTexel{sum.color[i], sum.weight[i]}; };
     tbb::parallel_for(std::size_t{0}, level.color.size(), [&](std::size_t i) {
-      level.color[i] = sum.weight[i] > 0
-                           ? sum.color[i] / sum.weight[i]
-                           : color_around(levels[k + 1], level.width, level.height, i);
+      level.color[i] = sum.weight[i] > 0 ? sum.color[i] / sum.weight[i]
+                                         : color_of_unseen(texture, sum.width, sum.height, texel,
+                                                           levels[k + 1], i);
     });
     sums.pop_back();
   }
@@ -152,9 +170,11 @@ bool is_seen(const ColorTexture& texture, const TexelWeights& weights, std::size
   return weight_of(texture, weights, texel) > 0;
 }
 
-const V3f& color_around(const ColorLevel& coarser, std::uint32_t width, std::uint32_t height,
-                        std::size_t texel) {
-  return coarser.color[covering(coarser, width, height, texel)];
+V3f color_of_unseen(const ColorTexture& texture, const TexelWeights& weights,
+                    const ColorLevel& coarser, std::size_t texel) {
+  return color_of_unseen(
+      texture, texture.width, texture.height,
+      [&](std::size_t i) { return texel_of(texture, weights, i); }, coarser, texel);
 }
 
 }  // namespace dapple

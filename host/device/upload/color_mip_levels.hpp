@@ -43,8 +43,8 @@ TexelWeights weights_of_seen(const ColorTexture& texture, const TexelWeights& we
 /// Whether a texel counts at all.
 bool is_seen(const ColorTexture& texture, const TexelWeights& weights, std::size_t texel);
 
-/// The colour that a texel of a level of this size has in the next coarser one.
-const V3f& color_around(const ColorLevel& coarser, std::uint32_t width, std::uint32_t height,
-                        std::size_t texel);
+/// The colour for a texel of the texture that does not count. `coarser`: the first of its levels.
+V3f color_of_unseen(const ColorTexture& texture, const TexelWeights& weights,
+                    const ColorLevel& coarser, std::size_t texel);
 
 }  // namespace dapple

@@ -66,7 +66,7 @@ std::vector<uint> pack_levels(const Scene& scene, const ColorTexture& texture,
   const std::vector<ColorLevel> levels = color_mip_levels(texture, weights);
   append(texture.rgb.size() / 3, [&](std::size_t i) {
     if (!levels.empty() && !is_seen(texture, weights, i))
-      return packed(color_around(levels.front(), texture.width, texture.height, i));
+      return packed(color_of_unseen(texture, weights, levels.front(), i));
     const std::uint8_t* texel = &texture.rgb[3 * i];
     return red[texel[0]] | green[texel[1]] | blue[texel[2]];
   });

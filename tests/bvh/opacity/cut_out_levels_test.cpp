@@ -40,6 +40,19 @@ TEST(OpacityMipLevels, CutOutsAreInterpolatedBeforeTheyAreThresholded) {
           << cutoff;
 }
 
+// Blades of two texels in eight: above a cutoff c they are 1 + 2 (1 - c) wide.
+TEST(OpacityMipLevels, EdgesOfBinaryAlphasLieWhereTheCutoffSays) {
+  for (const bool across : {false, true}) {
+    Texture blades;
+    blades.width = blades.height = 16;
+    for (int i = 0; i < 256; ++i) blades.alpha.push_back((across ? i / 16 : i) % 8 < 2 ? 255 : 0);
+    for (const float cutoff : {0.1f, 0.25f, 0.5f, 0.9f})
+      EXPECT_NEAR(OpacityMipLevels(blades, 1, cutoff).mean({0.5f, 0.5f}, 1e6f),
+                  (1 + 2 * (1 - cutoff)) / 8, 0.003)
+          << cutoff;
+  }
+}
+
 TEST(OpacityMipLevels, CoordinatesBeyondTheBorderOfAClampedTextureSeeItsTexels) {
   const std::array<V2f, 3> outside{V2f(-1, 0.5f), V2f(2, 0), V2f(2, 1)};
   EXPECT_TRUE(is_beyond_border(outside, Wrap::clamp, Wrap::repeat));

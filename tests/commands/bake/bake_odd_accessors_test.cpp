@@ -2,6 +2,7 @@
 // have, and a binary chunk that no buffer uses.
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -58,6 +59,23 @@ TEST_F(BakeCommand, MatricesOfBytesAreCopiedWhole) {
   ASSERT_EQ(tensors.count(), 3u);
   for (std::size_t i = 0; i < 27; ++i)
     EXPECT_EQ(tensors.stored(i / 9, i % 9), static_cast<float>(i)) << i;
+}
+
+// The triangle of the vertex is dropped; the vertex stays.
+TEST_F(BakeCommand, AVertexAtInfinityLeavesBoundsThatAreNumbers) {
+  GltfBuilder builder = rich_triangle();
+  const int position = builder.add_accessor(
+      std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0, std::numeric_limits<float>::infinity(), 0, 0},
+      test::kFloat, "VEC3");
+  json& primitive = builder.doc["meshes"][0]["primitives"][0];
+  primitive["attributes"] = {{"POSITION", position}};
+  primitive["indices"] =
+      builder.add_accessor(std::vector<std::uint16_t>{0, 1, 2, 0, 1, 3}, test::kUint16, "SCALAR");
+  write("in.glb", builder.glb());
+  const Outcome run = dapple("bake in.glb -o out.glb --to texture --size 16 --rays 8");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(load_gltf(path("out.glb")).meshes.at(0).primitive_count(), 2u) << "it is read";
+  for (const char* file : {"in.glb", "out.glb"}) std::filesystem::remove(path(file));
 }
 
 TEST_F(BakeCommand, ABinaryChunkThatNoBufferUsesIsLeftOut) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <set>
@@ -34,8 +35,10 @@ std::size_t copy_elements(Editor& editor, std::size_t accessor,
     if (const std::uint8_t* from = reader.bytes(source[i]))
       std::copy_n(from, size, bytes.begin() + static_cast<std::ptrdiff_t>(i * stride));
     for (std::size_t c = 0; c < low.size(); ++c) {
-      low[c] = std::min(low[c], reader.stored(source[i], c));
-      high[c] = std::max(high[c], reader.stored(source[i], c));
+      const float value = reader.stored(source[i], c);
+      if (!std::isfinite(value)) continue;  // JSON has no number for it
+      low[c] = std::min(low[c], value);
+      high[c] = std::max(high[c], value);
     }
   }
   Json json = editor.json()["accessors"][accessor];
