@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <optional>
 
 #include "bake/bake_bias.hpp"
@@ -129,13 +130,29 @@ void add_up_groups(const std::vector<Light>& lights, BakeResult& result) {
     result.instance_light = sums_of_layers(layers, result.instance_light);
 }
 
-/// The part of a scene that is one mesh, as it is in object space.
+/// The part of a scene that is one mesh, as it is in object space, with the textures that it uses.
 Scene scene_of_mesh(const Scene& scene, std::size_t mesh) {
   Scene alone;
   alone.source = scene.source;
-  alone.textures = scene.textures;
   alone.materials = scene.materials;
   alone.meshes = {scene.meshes[mesh]};
+  std::vector<bool> uses(scene.materials.size());
+  for (const std::uint32_t material : alone.meshes[0].materials) uses[material] = true;
+  std::map<int, int> numbers;  // of textures
+  for (std::size_t m = 0; m < uses.size(); ++m) {
+    Material& material = alone.materials[m];
+    material.color_texture = -1;
+    if (material.alpha_texture < 0) continue;
+    if (!uses[m]) {
+      material.alpha_texture = -1;
+      continue;
+    }
+    const auto [known, is_new] =
+        numbers.try_emplace(material.alpha_texture, static_cast<int>(numbers.size()));
+    if (is_new)
+      alone.textures.push_back(scene.textures[static_cast<std::size_t>(material.alpha_texture)]);
+    material.alpha_texture = known->second;
+  }
   alone.instances.resize(1);
   return alone;
 }
@@ -155,8 +172,8 @@ void add_preparation(const OccluderScene& occluders, double seconds, BakeStatist
 }
 
 /// To be called once, when all is traced.
-void add_pass_seconds(const OccluderScene& occluders, BakeStatistics& s) {
-  for (const auto& [label, seconds] : occluders.device.context().pass_seconds())
+void add_pass_seconds(const Device& device, BakeStatistics& s) {
+  for (const auto& [label, seconds] : device.context().pass_seconds())
     s.pass_seconds[label] += seconds;
 }
 
@@ -164,8 +181,10 @@ void add_pass_seconds(const OccluderScene& occluders, BakeStatistics& s) {
 class MeshOccluders {
  public:
   /// `options`: those that are traced with. With meshes alone each one's bias is measured anew.
-  MeshOccluders(const Scene& scene, const BakeOptions& options, const OccluderScene* together)
-      : scene_(scene),
+  MeshOccluders(const Device& device, const Scene& scene, const BakeOptions& options,
+                const OccluderScene* together)
+      : device_(device),
+        scene_(scene),
         two_sided_(scene, options.sides),
         asked_(options),
         options_(options),
@@ -176,27 +195,20 @@ class MeshOccluders {
     if (!together_) {
       const Stopwatch preparing;
       options_ = asked_;
-      add_alone(records.statistics);
-      alone_.emplace(scene_of_mesh(scene_, mesh), options_, std::vector<Scene>{});
+      alone_.emplace(device_, scene_of_mesh(scene_, mesh), options_, std::vector<Scene>{});
       add_preparation(*alone_, preparing.seconds(), records.statistics);
-      measure_bias(*alone_,
-                   {PilotMesh(scene_.meshes[mesh], two_sided_, options_,
-                              placed_alone())},
+      measure_bias(*alone_, {PilotMesh(scene_.meshes[mesh], two_sided_, options_, placed_alone())},
                    options_, records.statistics);
     }
     compared_.emplace(options_);
     return tracing_against(together_ ? *together_ : *alone_, options_, *compared_, records);
   }
 
-  /// Adds the passes of the last mesh, if it was traced alone.
-  void add_alone(BakeStatistics& statistics) const {
-    if (alone_) add_pass_seconds(*alone_, statistics);
-  }
-
   /// Of the last mesh.
   [[nodiscard]] float footprint() const { return options_.footprint; }
 
  private:
+  const Device& device_;
   const Scene& scene_;
   const TwoSided two_sided_;
   const BakeOptions asked_;
@@ -347,9 +359,10 @@ BakeResult bake(const Scene& scene, const BakeOptions& asked, const RenderContro
   const Stopwatch total;
   BakeResult result;
   BakeStatistics& s = result.statistics;
+  const Device device(options.device, options.kernel_dir);
   std::optional<OccluderScene> together;
   if (!alone || options.instances) {
-    together.emplace(scene, options, occluders);
+    together.emplace(device, scene, options, occluders);
     add_preparation(*together, total.seconds(), s);
     s.notes = together->notes;
   } else {
@@ -364,7 +377,8 @@ BakeResult bake(const Scene& scene, const BakeOptions& asked, const RenderContro
   if (together) measure_bias(*together, pilot_meshes(scene, options), options, s);
   BakeBias bias(has_bias(options) ? double{options.report_bias} : 0.0);
   const BakeRecords records{progress, checkpoint, bias, s};
-  MeshOccluders mesh_occluders(scene, alone ? asked : options, alone ? nullptr : &*together);
+  MeshOccluders mesh_occluders(device, scene, alone ? asked : options,
+                               alone ? nullptr : &*together);
   if (options.vertices)
     result.interrupted = !bake_vertices(scene, options, mesh_occluders, records, result);
   if (options.texture && !result.interrupted)
@@ -382,8 +396,7 @@ BakeResult bake(const Scene& scene, const BakeOptions& asked, const RenderContro
   if (checkpoint.points_read() > 0)
     s.notes.push_back(fmt::format("went on from {}: {} of {} points", control.resume,
                                   checkpoint.points_read(), s.points));
-  if (together) add_pass_seconds(*together, s);
-  mesh_occluders.add_alone(s);
+  add_pass_seconds(device, s);
   s.seconds.total = total.seconds();
   s.seconds.trace = s.seconds.total - prepared_seconds(s);
   return result;

@@ -65,9 +65,9 @@ std::vector<KernelName> kernels_of(const DeviceContext& context, const BakeOptio
 
 }  // namespace
 
-OccluderScene::OccluderScene(Scene scene, const BakeOptions& options,
+OccluderScene::OccluderScene(const Device& on, Scene scene, const BakeOptions& options,
                              const std::vector<Scene>& others)
-    : device(options.device, options.kernel_dir) {
+    : device(on) {
   check_scene(scene);
   for (const Scene& other : others) check_scene(other);
   KernelsAhead kernels(device.context(), kernels_of(device.context(), options));

@@ -15,7 +15,8 @@ namespace dapple {
 
 struct OccluderScene {
   /// Throws Error usage, input, device or failed.
-  OccluderScene(Scene scene, const BakeOptions& options, const std::vector<Scene>& others);
+  OccluderScene(const Device& on, Scene scene, const BakeOptions& options,
+                const std::vector<Scene>& others);
 
   Device device;
   SceneBvh bvh;

@@ -219,7 +219,7 @@ TEST(SmoothBake, SamplesAreAsBrightAsAPictureOfThem) {
   scene.lights = {small_sun({1, 1, 1})};
   BakeOptions options = exactly(4096);
   options.light = true;
-  const OccluderScene occluders(scene, options, {});
+  const OccluderScene occluders(Device(), scene, options, {});
   const Mesh& mesh = scene.meshes[0];
   const std::vector<bool> two_sided(mesh.primitive_count(), true);
   const VertexGroups groups = group_vertices(mesh, two_sided);

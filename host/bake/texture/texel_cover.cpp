@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <utility>
 
 #include "dapple/error.hpp"
 
@@ -31,24 +32,44 @@ TexelPolygon cut(const TexelPolygon& polygon, int axis, float limit, float sign)
   return out;
 }
 
-/// Calls visit(x, y) for each texel in which the triangle has an area.
+/// A triangle in units of texels.
+TexelPolygon in_texels(const V2f* uv, std::uint32_t size) {
+  TexelPolygon polygon;
+  for (; polygon.count < 3; ++polygon.count)
+    polygon.corners[polygon.count] = uv[polygon.count] * static_cast<float>(size);
+  return polygon;
+}
+
+/// The least and the largest coordinate.
+std::pair<float, float> extent(const TexelPolygon& polygon, int axis) {
+  float low = polygon.corners[0][axis], high = low;
+  for (std::size_t i = 1; i < polygon.count; ++i) {
+    low = std::min(low, polygon.corners[i][axis]);
+    high = std::max(high, polygon.corners[i][axis]);
+  }
+  return {low, high};
+}
+
+/// Calls visit(x, y) for each texel in which the triangle has an area. Only the texels of a row
+/// between the triangle's sides there are looked at: long thin ones have large rectangles.
 template <class Visit>
 void visit_texels(const V2f* uv, std::uint32_t size, Visit visit) {
-  const auto scale = static_cast<float>(size);
-  V2f low(uv[0]), high(uv[0]);
-  for (int k = 0; k < 3; ++k) {
+  constexpr float kBeside = 0.01f;  // texels: more than the rounding of where sides cross a row
+  for (int k = 0; k < 3; ++k)
     if (!std::isfinite(uv[k].x) || !std::isfinite(uv[k].y)) return;
-    for (int axis = 0; axis < 2; ++axis) {
-      low[axis] = std::min(low[axis], uv[k][axis]);
-      high[axis] = std::max(high[axis], uv[k][axis]);
-    }
-  }
   const auto texel = [&](float x) {
-    return static_cast<std::uint32_t>(std::clamp(x * scale, 0.0f, scale - 1));
+    return static_cast<std::uint32_t>(std::clamp(x, 0.0f, static_cast<float>(size - 1)));
   };
-  for (std::uint32_t y = texel(low.y); y <= texel(high.y); ++y)
-    for (std::uint32_t x = texel(low.x); x <= texel(high.x); ++x)
+  const TexelPolygon triangle = in_texels(uv, size);
+  const auto [top, bottom] = extent(triangle, 1);
+  for (std::uint32_t y = texel(top); y <= texel(bottom); ++y) {
+    const auto row = static_cast<float>(y);
+    const TexelPolygon in_row = cut(cut(triangle, 1, row - kBeside, 1), 1, row + 1 + kBeside, -1);
+    if (in_row.count == 0) continue;
+    const auto [left, right] = extent(in_row, 0);
+    for (std::uint32_t x = texel(left - kBeside); x <= texel(right + kBeside); ++x)
       if (clip_to_texel(uv, size, x, y).area() > kMinArea) visit(x, y);
+  }
 }
 
 /// A counter for each texel, in blocks of texels that are made at the first use: the charts of a
@@ -99,9 +120,7 @@ float TexelPolygon::area() const {
 }
 
 TexelPolygon clip_to_texel(const V2f* uv, std::uint32_t size, std::uint32_t x, std::uint32_t y) {
-  TexelPolygon polygon;
-  for (; polygon.count < 3; ++polygon.count)
-    polygon.corners[polygon.count] = uv[polygon.count] * static_cast<float>(size);
+  TexelPolygon polygon = in_texels(uv, size);
   const auto left = static_cast<float>(x), top = static_cast<float>(y);
   polygon = cut(polygon, 0, left, 1);
   polygon = cut(polygon, 0, left + 1, -1);

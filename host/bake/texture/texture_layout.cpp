@@ -24,17 +24,17 @@ constexpr std::uint32_t kMinGap = 2;
 /// Exporters compute texture coordinates in floats: 1.0000001 is the border.
 constexpr float kOutside = 1e-5f;
 
-/// Of a mesh, the first that is not scaled to zero; the identity if it has none.
-M44f first_placement(const Scene& scene, std::uint32_t mesh) {
-  for (const Instance& instance : scene.instances)
-    if (instance.mesh == mesh && is_invertible(instance.to_world)) return instance.to_world;
-  return {};
+/// By mesh, the first placement that is not scaled to zero; the identity if there is none.
+std::vector<M44f> first_placements(const Scene& scene) {
+  std::vector<M44f> first(scene.meshes.size());
+  for (auto instance = scene.instances.rbegin(); instance != scene.instances.rend(); ++instance)
+    if (is_invertible(instance->to_world)) first[instance->mesh] = instance->to_world;
+  return first;
 }
 
-/// Lengths in the world over lengths of a mesh, at its first placement.
-float scale_of(const Scene& scene, std::uint32_t mesh) {
-  return static_cast<float>(
-      std::cbrt(std::fabs(double{first_placement(scene, mesh).determinant()})));
+/// Lengths in the world over lengths of a mesh.
+float scale_of(const M44f& to_world) {
+  return static_cast<float>(std::cbrt(std::fabs(double{to_world.determinant()})));
 }
 
 /// Twice the area of a triangle in the world; 0 where it is not finite.
@@ -57,10 +57,11 @@ struct PlacedChart {
 using PlacedCharts = std::vector<PlacedChart>;
 
 PlacedCharts charts_of_scene(const Scene& scene, const std::vector<bool>& textured) {
+  const std::vector<M44f> placements = first_placements(scene);
   PlacedCharts charts;
   for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) {
     if (!textured[m]) continue;
-    const float scale = scale_of(scene, m);
+    const float scale = scale_of(placements[m]);
     for (Chart& chart : make_charts(scene.meshes[m]))
       charts.push_back({std::move(chart), m, scale});
   }
@@ -214,11 +215,12 @@ TextureLayout given_layout(const Scene& scene, const BakeOptions& options) {
 double share_without_texels(const Scene& scene, const std::vector<std::vector<V2f>>& uvs,
                             std::uint32_t size, BakePlacement placement) {
   const std::vector<bool> textured = textured_meshes(scene, placement);
+  const std::vector<M44f> placements = first_placements(scene);
   double all = 0, without = 0;
   for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) {
     const Mesh& mesh = scene.meshes[m];
     if (!textured[m]) continue;
-    const M44f to_world = first_placement(scene, m);
+    const M44f& to_world = placements[m];
     for (std::size_t t = 0; t < mesh.primitive_count(); ++t) {
       V2f uv[3];
       for (std::size_t k = 0; k < 3; ++k) {

@@ -82,6 +82,10 @@ class TextureIntegrals {
   /// Makes them for itself.
   TextureIntegrals(const Scene& scene, std::span<const TexturedTriangle> textured);
 
+  /// For the same triangles in another pose: `scene` has the same materials and textures, and must
+  /// outlive this object.
+  void move_to(const Scene& scene) { materials_ = &scene.materials; }
+
   [[nodiscard]] TriangleIntegral of(const TexturedTriangle& triangle) const;
 
  private:

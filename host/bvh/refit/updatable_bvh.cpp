@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <mutex>
+#include <optional>
 
 #include "bvh/build/joined_objects.hpp"
 #include "bvh/build/scene_bvh.hpp"
@@ -61,6 +62,8 @@ struct UpdatableBvh::State {
   std::vector<double> built_places;  ///< the same: share_of_places()
   std::vector<MeshKey> keys;
   std::vector<Instance> instances;
+  /// Of the textured triangles, from the first refit on: mip levels are the same in all poses.
+  std::optional<TextureIntegrals> integrals;
 
   void build(const Scene& scene, Motion motion, const std::string& cache_folder);
   void rebuild(const Scene& scene, const std::vector<bool>& is_kept);
@@ -80,6 +83,7 @@ void UpdatableBvh::State::build(const Scene& scene, Motion motion,
                                 const std::string& cache_folder) {
   check_geometry(scene);
   const std::size_t meshes = scene.meshes.size();
+  integrals.reset();
   bvh = {};
   arrays = {};
   objects.assign(meshes, {});
@@ -96,6 +100,7 @@ void UpdatableBvh::State::build(const Scene& scene, Motion motion,
 
 /// Builds all objects except those that are kept.
 void UpdatableBvh::State::rebuild(const Scene& scene, const std::vector<bool>& is_kept) {
+  integrals.reset();
   std::vector<FinishedObject> finished =
       build_refittable(scene, separated(is_kept), is_kept, records, bvh.statistics);
   put_together(scene, std::move(finished));
@@ -168,11 +173,15 @@ std::vector<std::size_t> UpdatableBvh::State::sort_objects(const Scene& scene,
 }
 
 void UpdatableBvh::State::refit(const Scene& scene, const std::vector<std::size_t>& moved) {
-  std::once_flag made;
-  TextureIntegrals integrals;
+  std::once_flag ready;
   const auto textures = [&]() -> const TextureIntegrals& {
-    std::call_once(made, [&] { integrals = TextureIntegrals(scene, bvh.textured); });
-    return integrals;
+    std::call_once(ready, [&] {
+      if (integrals)
+        integrals->move_to(scene);
+      else
+        integrals.emplace(scene, bvh.textured);
+    });
+    return *integrals;
   };
   tbb::parallel_for(std::size_t{0}, moved.size(), [&](std::size_t i) {
     const std::size_t m = moved[i];

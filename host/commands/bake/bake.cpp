@@ -176,8 +176,11 @@ std::vector<std::string> write_baked(const gltf::SourceFile& file, const Scene& 
     const auto primitives = textured_primitives(file, scene, layout, uvs.set);
     const std::size_t replaced =
         gltf::add_occlusion_texture(editor, primitives, occlusion_png(result.texture, a.bits));
+    const auto unlit = std::count_if(
+        primitives.begin(), primitives.end(),
+        [&](const gltf::TexturedPrimitive& p) { return file.is_unlit(p.mesh, p.primitive); });
     notes = {coordinates_note(layout, primitives, uvs.note), texture_note(result.texture),
-             replaced_note(replaced)};
+             replaced_note(replaced), unlit_note(static_cast<std::size_t>(unlit))};
   }
   PendingFiles files;
   editor.write(files);

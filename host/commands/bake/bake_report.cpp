@@ -58,6 +58,14 @@ std::string replaced_note(std::size_t replaced) {
       replaced == 1 ? std::string("1 material") : fmt::format("{} materials", replaced));
 }
 
+std::string unlit_note(std::size_t primitives) {
+  if (primitives == 0) return {};
+  return fmt::format(
+      "{} of KHR_materials_unlit: viewers ignore their occlusion texture; --to vertex darkens them",
+      primitives == 1 ? std::string("1 primitive is")
+                      : fmt::format("{} primitives are", primitives));
+}
+
 void write_statistics(const BakeResult& result, const BakeSeconds& seconds,
                       const std::string& path) {
   const BakeStatistics& s = result.statistics;

@@ -18,6 +18,9 @@ std::string texture_note(const BakedTexture& texture);
 /// A line on the occlusion textures of the file that were `replaced`; empty: none.
 std::string replaced_note(std::size_t replaced);
 
+/// A line on primitives whose materials are unlit; empty: none.
+std::string unlit_note(std::size_t primitives);
+
 void write_statistics(const BakeResult& result, const BakeSeconds& seconds,
                       const std::string& path);
 

@@ -149,5 +149,16 @@ TEST_F(BakeExtensions, TextureCoordinatesThatATextureUsesAreNotReplaced) {
                  "texture of its own extensions");
 }
 
+TEST_F(BakeCommand, UnlitMaterialsAreNotedWhereTheyGetATexture) {
+  GltfBuilder builder = rich_triangle();
+  builder.add("materials", {{"extensions", {{"KHR_materials_unlit", json::object()}}}});
+  builder.doc["meshes"][0]["primitives"][0]["material"] = 0;
+  builder.doc["extensionsUsed"].push_back("KHR_materials_unlit");
+  write("in.glb", builder.glb());
+  const std::string note = "1 primitive is of KHR_materials_unlit";
+  EXPECT_TRUE(contains(dapple("bake in.glb -o out.glb --to texture --size 16 --rays 8").err, note));
+  EXPECT_FALSE(contains(dapple("bake in.glb -o out.glb --rays 8").err, note));
+}
+
 }  // namespace
 }  // namespace dapple

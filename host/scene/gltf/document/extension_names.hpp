@@ -11,6 +11,7 @@ inline constexpr const char* kLights = "KHR_lights_punctual";
 inline constexpr const char* kQuantization = "KHR_mesh_quantization";
 inline constexpr const char* kSpecularGlossiness = "KHR_materials_pbrSpecularGlossiness";
 inline constexpr const char* kTextureTransform = "KHR_texture_transform";
+inline constexpr const char* kUnlit = "KHR_materials_unlit";
 inline constexpr const char* kVariants = "KHR_materials_variants";
 
 }  // namespace dapple::gltf::extension

@@ -30,7 +30,7 @@ constexpr std::array<std::string_view, 15> kIgnored = {
     "KHR_materials_sheen",
     "KHR_materials_specular",
     "KHR_materials_transmission",
-    "KHR_materials_unlit",
+    extension::kUnlit,
     extension::kVariants,
     "KHR_materials_volume",
     "KHR_xmp",

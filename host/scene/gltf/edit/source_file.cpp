@@ -204,6 +204,13 @@ std::optional<std::uint32_t> SourceFile::occlusion_set(std::uint32_t mesh,
   return json["occlusionTexture"].value("texCoord", 0u);
 }
 
+bool SourceFile::is_unlit(std::uint32_t mesh, std::uint32_t primitive) const {
+  const int material = material_of(content->json["meshes"][mesh]["primitives"][primitive]);
+  return material != kNoMaterial &&
+         has_extension(content->json["materials"][static_cast<std::size_t>(material)],
+                       extension::kUnlit);
+}
+
 std::vector<std::string> SourceFile::attributes(std::uint32_t mesh, std::uint32_t primitive) const {
   std::vector<std::string> names;
   for (const auto& [name, accessor] : content->primitive(mesh, primitive).attributes)

@@ -43,6 +43,8 @@ struct SourceFile {
   /// TEXCOORD_`set`: `baseColorTexture of material 2 ("bark")`. Empty if none does.
   [[nodiscard]] std::string texture_with_uvs(std::uint32_t mesh, std::uint32_t primitive,
                                              std::uint32_t set) const;
+  /// Whether a primitive's material is KHR_materials_unlit: viewers use no occlusion texture of it.
+  [[nodiscard]] bool is_unlit(std::uint32_t mesh, std::uint32_t primitive) const;
   /// The names of a primitive's attributes, sorted.
   [[nodiscard]] std::vector<std::string> attributes(std::uint32_t mesh,
                                                     std::uint32_t primitive) const;
