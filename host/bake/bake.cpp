@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <optional>
 
 #include "bake/bake_bias.hpp"
@@ -128,33 +127,6 @@ void add_up_groups(const std::vector<Light>& lights, BakeResult& result) {
     result.texture.light = sums_of_layers(layers, result.texture.light);
   if (!result.instance_light.empty())
     result.instance_light = sums_of_layers(layers, result.instance_light);
-}
-
-/// The part of a scene that is one mesh, as it is in object space, with the textures that it uses.
-Scene scene_of_mesh(const Scene& scene, std::size_t mesh) {
-  Scene alone;
-  alone.source = scene.source;
-  alone.materials = scene.materials;
-  alone.meshes = {scene.meshes[mesh]};
-  std::vector<bool> uses(scene.materials.size());
-  for (const std::uint32_t material : alone.meshes[0].materials) uses[material] = true;
-  std::map<int, int> numbers;  // of textures
-  for (std::size_t m = 0; m < uses.size(); ++m) {
-    Material& material = alone.materials[m];
-    material.color_texture = -1;
-    if (material.alpha_texture < 0) continue;
-    if (!uses[m]) {
-      material.alpha_texture = -1;
-      continue;
-    }
-    const auto [known, is_new] =
-        numbers.try_emplace(material.alpha_texture, static_cast<int>(numbers.size()));
-    if (is_new)
-      alone.textures.push_back(scene.textures[static_cast<std::size_t>(material.alpha_texture)]);
-    material.alpha_texture = known->second;
-  }
-  alone.instances.resize(1);
-  return alone;
 }
 
 double prepared_seconds(const BakeStatistics& s) {

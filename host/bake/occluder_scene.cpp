@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <map>
+
 #include "bake/bake_bias.hpp"
 #include "bake/samples/surface_samples.hpp"
 #include "device/programs/kernels_ahead.hpp"
@@ -98,6 +100,32 @@ OccluderScene::OccluderScene(const Device& on, Scene scene, const BakeOptions& o
   kernel_seconds = compiling.seconds();
   for (std::string& warning : scene.warnings) notes.push_back(std::move(warning));
   closed = std::make_unique<ClosedGeometry>(std::move(scene));
+}
+
+Scene scene_of_mesh(const Scene& scene, std::size_t mesh) {
+  Scene alone;
+  alone.source = scene.source;
+  alone.materials = scene.materials;
+  alone.meshes = {scene.meshes[mesh]};
+  std::vector<bool> uses(scene.materials.size());
+  for (const std::uint32_t material : alone.meshes[0].materials) uses[material] = true;
+  std::map<int, int> numbers;  // of textures
+  for (std::size_t m = 0; m < uses.size(); ++m) {
+    Material& material = alone.materials[m];
+    material.color_texture = -1;
+    if (material.alpha_texture < 0) continue;
+    if (!uses[m]) {
+      material.alpha_texture = -1;
+      continue;
+    }
+    const auto [known, is_new] =
+        numbers.try_emplace(material.alpha_texture, static_cast<int>(numbers.size()));
+    if (is_new)
+      alone.textures.push_back(scene.textures[static_cast<std::size_t>(material.alpha_texture)]);
+    material.alpha_texture = known->second;
+  }
+  alone.instances.resize(1);
+  return alone;
 }
 
 }  // namespace dapple

@@ -28,4 +28,7 @@ struct OccluderScene {
   std::vector<std::string> notes;
 };
 
+/// The part of a scene that is one mesh, as it is in object space, with the textures that it uses.
+Scene scene_of_mesh(const Scene& scene, std::size_t mesh);
+
 }  // namespace dapple
