@@ -184,6 +184,7 @@ TEST(ShadingNormal, FacesTheRayThatSawItNotTheMiddleOfTheLens) {
     camera.focus_distance = 3;
     scene.cameras = {camera};
     RenderOptions options = options_of(Normals::shading);
+    options.look = {};
     options.spp = 64;
     const Film film = render(scene, options).film;
     double towards = 0, seen = 0;

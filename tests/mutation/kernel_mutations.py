@@ -51,7 +51,7 @@ MUTATIONS = [
     Mutation(
         "normals-face-the-middle-of-the-lens", "kernels/shading/smooth_point.clh",
         "to_viewer -= 2.0f * fmin(dot(geometric, to_viewer), 0.0f) * geometric;",
-        "to_viewer -= 0.0f * fmin(dot(geometric, to_viewer), 0.0f) * geometric;",
+        "to_viewer *= dot(geometric, to_viewer) < 0.0f ? -1.0f : 1.0f;",
         r"^ShadingNormal\."),
     Mutation(
         "roulette-keeps-what-single-rays-have", "kernels/occlusion/traverse.clh",
