@@ -28,6 +28,7 @@
 #include "film/light_layers.hpp"
 #include "render/option_check.hpp"
 #include "render/stopwatch.hpp"
+#include "scene/check/scene_check.hpp"
 
 namespace dapple {
 namespace {
@@ -338,6 +339,7 @@ BakeResult bake(const Scene& scene, const BakeOptions& asked, const RenderContro
     add_preparation(*together, total.seconds(), s);
     s.notes = together->notes;
   } else {
+    check_scene(scene);
     s.notes = scene.warnings;
   }
   note_left_out(scene, alone || options.instances, s.notes);

@@ -14,8 +14,8 @@ using Imath::V3d;
 
 /// Meshes with values that are placed once, as one mesh in the world.
 struct JoinedMeshes {
-  Mesh mesh;                    ///< positions and indices alone
-  std::vector<bool> two_sided;  ///< by triangle
+  Mesh mesh;                                      ///< positions and indices alone
+  std::vector<bool> two_sided;                    ///< by triangle
   std::vector<std::uint32_t> mesh_of, vertex_of;  ///< by vertex: in the scene
   std::vector<M44f> to_world;                     ///< by mesh of the scene
   std::size_t count = 0;                          ///< of meshes
@@ -108,8 +108,7 @@ V3f direction(const V3f& given, const M44f& matrix) {
 class GroupMean {
  public:
   /// Vertices of one mesh follow one another.
-  void add(std::uint32_t mesh, std::uint32_t vertex, const BakedMesh& baked,
-           const M44f& to_world) {
+  void add(std::uint32_t mesh, std::uint32_t vertex, const BakedMesh& baked, const M44f& to_world) {
     if (count_ > 0 && mesh == last_mesh_) return;
     last_mesh_ = mesh;
     ++count_;
@@ -147,8 +146,7 @@ void join_borders(const Scene& scene, const TwoSided& two_sided, BakeResult& res
   const VertexGroups groups = group_vertices(around.mesh, around.two_sided);
   std::vector<std::pair<std::uint32_t, std::uint32_t>> members;  // joined vertex, group
   for (std::size_t i = 0; i < around.vertex_of.size(); ++i)
-    if (shared[around.vertex_of[i]])
-      members.emplace_back(around.vertex_of[i], groups.of_vertex[i]);
+    if (shared[around.vertex_of[i]]) members.emplace_back(around.vertex_of[i], groups.of_vertex[i]);
   std::sort(members.begin(), members.end());  // mesh after mesh
   std::vector<GroupMean> means(groups.count);
   for (const auto& [vertex, group] : members) {

@@ -39,6 +39,8 @@ TEST(SceneCheck, WhatDoesNotFitTogetherIsNamed) {
   const std::vector<V3f> up{V3f(0, 1, 0)};
   PointOptions periodic;
   periodic.period_x = periodic.period_z = 2;
+  BakeOptions alone;
+  alone.placement = BakePlacement::alone;
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const std::pair<std::function<void(Scene&)>, std::string> cases[] = {
       {[](Scene& s) { s.meshes[0].indices[4] = 4'000'000'000; },
@@ -105,7 +107,8 @@ TEST(SceneCheck, WhatDoesNotFitTogetherIsNamed) {
          {message_of([&] { (void)render(scene, picture); }),
           message_of([&] { (void)measure_points(scene, up, up); }),
           message_of([&] { (void)measure_points(scene, up, up, periodic); }),
-          message_of([&] { (void)bake(scene, {}); }), message_of([&] { (void)build_bvh(scene); })})
+          message_of([&] { (void)bake(scene, {}); }), message_of([&] { (void)bake(scene, alone); }),
+          message_of([&] { (void)build_bvh(scene); })})
       EXPECT_TRUE(message.starts_with(expected)) << message << " in place of " << expected;
   }
 }

@@ -78,6 +78,22 @@ TEST_F(BakeCommand, AVertexAtInfinityLeavesBoundsThatAreNumbers) {
   for (const char* file : {"in.glb", "out.glb"}) std::filesystem::remove(path(file));
 }
 
+TEST_F(BakeCommand, VerticesThatAreAllAtInfinityLeaveBoundsThatAreNumbers) {
+  GltfBuilder builder = rich_triangle();
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  json& primitives = builder.doc["meshes"][0]["primitives"];
+  primitives.push_back(
+      {{"attributes",
+        {{"POSITION", builder.add_accessor(
+                          std::vector<float>{kInfinity, 0, 0, kInfinity, 1, 0, kInfinity, 0, 1},
+                          test::kFloat, "VEC3")}}}});
+  write("in.glb", builder.glb());
+  const Outcome run = dapple("bake in.glb -o out.glb --to texture --size 16 --rays 8");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_FALSE(load_gltf(path("out.glb")).meshes.empty()) << "it is read";
+  for (const char* file : {"in.glb", "out.glb"}) std::filesystem::remove(path(file));
+}
+
 TEST_F(BakeCommand, ABinaryChunkThatNoBufferUsesIsLeftOut) {
   GltfBuilder builder = rich_triangle();
   write("far.bin", builder.bin);

@@ -41,6 +41,8 @@ std::size_t copy_elements(Editor& editor, std::size_t accessor,
       high[c] = std::max(high[c], value);
     }
   }
+  for (std::size_t c = 0; c < low.size(); ++c)
+    if (low[c] > high[c]) low[c] = high[c] = 0;  // none is finite
   Json json = editor.json()["accessors"][accessor];
   with_bounds = with_bounds || json.contains("min");
   for (const char* key : {"byteOffset", "sparse", "min", "max"}) json.erase(key);
