@@ -11,12 +11,17 @@
 namespace dapple {
 namespace {
 
-TEST(Dilation, ATexelTakesTheNearestValidOneWithinTheMargin) {
-  constexpr std::uint32_t kSize = 32;
+constexpr std::uint32_t kSize = 32;  // texels a side
+
+std::vector<bool> valid_at(std::uint32_t a, std::uint32_t b) {
   std::vector<bool> valid(kSize * kSize);
-  const std::uint32_t a = 10 * kSize + 10, b = 20 * kSize + 22;
   valid[a] = valid[b] = true;
-  const std::vector<std::uint32_t> nearest = nearest_valid(valid, kSize, 5);
+  return valid;
+}
+
+TEST(Dilation, ATexelTakesTheNearestValidOneWithinTheMargin) {
+  const std::uint32_t a = 10 * kSize + 10, b = 20 * kSize + 22;
+  const std::vector<std::uint32_t> nearest = nearest_valid(valid_at(a, b), kSize, 5);
   for (std::uint32_t y = 0; y < kSize; ++y) {
     for (std::uint32_t x = 0; x < kSize; ++x) {
       const auto away = [&](std::uint32_t of) {
@@ -30,11 +35,8 @@ TEST(Dilation, ATexelTakesTheNearestValidOneWithinTheMargin) {
 }
 
 TEST(Dilation, BetweenTwoValidTexelsEachTexelTakesTheCloserOne) {
-  constexpr std::uint32_t kSize = 32;
-  std::vector<bool> valid(kSize * kSize);
   const std::uint32_t a = 16 * kSize + 12, b = 16 * kSize + 18;
-  valid[a] = valid[b] = true;
-  const std::vector<std::uint32_t> nearest = nearest_valid(valid, kSize, 10);
+  const std::vector<std::uint32_t> nearest = nearest_valid(valid_at(a, b), kSize, 10);
   int reached = 0;
   for (std::uint32_t i = 0; i < kSize * kSize; ++i) {
     const auto square = [&](std::uint32_t of) {
@@ -50,14 +52,14 @@ TEST(Dilation, BetweenTwoValidTexelsEachTexelTakesTheCloserOne) {
 }
 
 TEST(Dilation, TheSearchStaysInItsTexels) {
-  constexpr std::uint32_t kSize = 16;
-  std::vector<bool> valid(kSize * kSize), within(kSize * kSize);
-  const auto at = [](std::uint32_t x, std::uint32_t y) { return y * kSize + x; };
+  constexpr std::uint32_t kSmall = 16;
+  std::vector<bool> valid(kSmall * kSmall), within(kSmall * kSmall);
+  const auto at = [](std::uint32_t x, std::uint32_t y) { return y * kSmall + x; };
   // Two columns with an empty one between them; the values are at the ends far from each other.
-  for (std::uint32_t y = 0; y < kSize; ++y) within[at(4, y)] = within[at(6, y)] = true;
+  for (std::uint32_t y = 0; y < kSmall; ++y) within[at(4, y)] = within[at(6, y)] = true;
   valid[at(4, 0)] = valid[at(6, 15)] = true;
-  const std::vector<std::uint32_t> nearest = nearest_valid(valid, kSize, 16, within);
-  for (std::uint32_t y = 0; y < kSize; ++y) {
+  const std::vector<std::uint32_t> nearest = nearest_valid(valid, kSmall, 16, within);
+  for (std::uint32_t y = 0; y < kSmall; ++y) {
     EXPECT_EQ(nearest[at(4, y)], at(4, 0)) << y;
     EXPECT_EQ(nearest[at(6, y)], at(6, 15)) << y;
     EXPECT_EQ(nearest[at(5, y)], kNoTexel) << y;

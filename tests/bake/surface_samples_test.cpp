@@ -10,17 +10,10 @@
 #include <vector>
 
 #include "bake/vertex_groups.hpp"
+#include "support/scenes/separate_triangles.hpp"
 
 namespace dapple {
 namespace {
-
-Mesh triangles(std::vector<V3f> positions) {
-  Mesh mesh;
-  mesh.positions = std::move(positions);
-  for (std::uint32_t i = 0; i < mesh.positions.size(); ++i) mesh.indices.push_back(i);
-  mesh.materials.resize(mesh.positions.size() / 3, 0);
-  return mesh;
-}
 
 TEST(SurfaceSamples, TheFirstPowersOfFourLieInDifferentPartsOfATriangle) {
   for (const std::uint32_t shift : {0u, 0x1234u, 0xffffu}) {
@@ -43,7 +36,7 @@ TEST(SurfaceSamples, TheFirstPowersOfFourLieInDifferentPartsOfATriangle) {
 }
 
 TEST(SurfaceSamples, WeightsOfASampleAddUpToTwiceTheArea) {
-  const Mesh mesh = triangles({{0, 0, 0}, {2, 0, 0}, {0, 3, 0}});
+  const Mesh mesh = test::separate_triangles({{0, 0, 0}, {2, 0, 0}, {0, 3, 0}});
   const VertexGroups groups = group_vertices(mesh);
   const std::vector<bool> two_sided{true};
   const SurfaceSample sample = sample_triangle({mesh, groups, two_sided}, 0, 5);
@@ -52,7 +45,8 @@ TEST(SurfaceSamples, WeightsOfASampleAddUpToTwiceTheArea) {
 }
 
 TEST(SurfaceSamples, DegenerateTrianglesHaveNoArea) {
-  const Mesh mesh = triangles({{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {0, 0, 0}, {NAN, 0, 0}, {0, 1, 0}});
+  const Mesh mesh = test::separate_triangles(
+      {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {0, 0, 0}, {NAN, 0, 0}, {0, 1, 0}});
   EXPECT_FALSE(has_area(mesh, 0));
   EXPECT_FALSE(has_area(mesh, 1));
 }

@@ -9,17 +9,10 @@
 #include <limits>
 
 #include "bake/samples/surface_samples.hpp"
+#include "support/scenes/separate_triangles.hpp"
 
 namespace dapple {
 namespace {
-
-Mesh triangles(std::vector<V3f> positions) {
-  Mesh mesh;
-  mesh.positions = std::move(positions);
-  for (std::uint32_t i = 0; i < mesh.positions.size(); ++i) mesh.indices.push_back(i);
-  mesh.materials.resize(mesh.positions.size() / 3, 0);
-  return mesh;
-}
 
 // A square of two triangles that share no vertex, folded about its diagonal by an angle.
 Mesh folded_square(float degrees) {
@@ -27,7 +20,7 @@ Mesh folded_square(float degrees) {
   const V3f a(0, 0, 0), b(1, 1, 0);
   const V3f side =
       V3f(-0.5f, 0.5f, 0) * std::cos(angle) + V3f(0, 0, std::sqrt(0.5f)) * std::sin(angle);
-  return triangles({a, V3f(1, 0, 0), b, a, b, V3f(0.5f, 0.5f, 0) + side});
+  return test::separate_triangles({a, V3f(1, 0, 0), b, a, b, V3f(0.5f, 0.5f, 0) + side});
 }
 
 TEST(VertexGroups, ASmoothSeamIsOneGroupAndAHardEdgeIsTwo) {
@@ -61,7 +54,7 @@ TEST(VertexGroups, OppositeNormalsAreSimilarOnlyOfTwoSidedSheets) {
 
 TEST(VertexGroups, PartsAreJoinedByTriangles) {
   Mesh mesh = folded_square(0);
-  for (const V3f& p : triangles({{5, 0, 0}, {6, 0, 0}, {5, 1, 0}}).positions)
+  for (const V3f& p : test::separate_triangles({{5, 0, 0}, {6, 0, 0}, {5, 1, 0}}).positions)
     mesh.positions.push_back(p);
   mesh.indices.insert(mesh.indices.end(), {6, 7, 8});
   mesh.materials.push_back(0);
@@ -76,7 +69,7 @@ TEST(VertexGroups, PartsAreJoinedByTriangles) {
 /// the same one: the minimum of several runs. Without areas they have no normals, which are similar
 /// to nothing, so that each vertex is compared with as many others as any can be.
 double grouping_seconds(std::size_t count) {
-  const Mesh mesh = triangles(std::vector<V3f>(3 * count, V3f(1, 2, 3)));
+  const Mesh mesh = test::separate_triangles(std::vector<V3f>(3 * count, V3f(1, 2, 3)));
   double min = std::numeric_limits<double>::infinity();
   for (int run = 0; run < 3; ++run) {
     const std::clock_t start = std::clock();
