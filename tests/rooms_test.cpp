@@ -43,6 +43,10 @@ const std::vector<Library> kLibraries{
      {"host/files/", "host/scene/", "host/bvh/", "host/device/", "host/film/", "host/sampling/",
       "host/render/", "host/bake/", "host/points/"}},
     {"stb", std::regex("(stb/)?stb_.*"), {"host/scene/images/", "host/film/preview/png."}},
+    {"libwebp", std::regex("webp/.*"), {"host/scene/images/webp."}},
+    {"meshoptimizer",
+     std::regex("meshoptimizer\\.h"),
+     {"host/scene/gltf/document/compressed_views."}},
     {"xxHash and zstd", std::regex("xxhash\\.h|zstd\\.h"), {"host/files/"}},
     {"CLI11", std::regex("CLI/.*"), {"host/commands/", "host/main.cpp"}},
 };

@@ -86,10 +86,10 @@ void add_jpeg(MalformedCases& cases) {
 
 void add_other_kinds(MalformedCases& cases) {
   const auto text = [](const std::string& bytes) { return Bytes(bytes.begin(), bytes.end()); };
-  const char* const says = "is neither a PNG nor a JPEG image";
+  const char* const says = "is none of PNG, JPEG and WebP";
   add_bytes(cases, "empty_of_noise", Bytes(4, 0), says);
   add_bytes(cases, "gif", text("GIF89a\1\0\1\0\0\0\0;"), says);
-  add_bytes(cases, "webp", text("RIFF\x1a\0\0\0WEBPVP8L"), says);
+  add_bytes(cases, "webp", text({"RIFF\x1a\0\0\0WEBPVP8L", 16}), "is corrupt (its WebP header)");
   add_bytes(cases, "ktx2", text("\xabKTX 20\xbb\r\n\x1a\n"), says);
   add_bytes(cases, "svg", text("<svg xmlns=\"http://www.w3.org/2000/svg\"/>"), says);
 }
@@ -109,10 +109,13 @@ void add_sources(MalformedCases& cases) {
   add("of_both", {{"uri", "a.png"}, {"bufferView", 0}}, "image 0: has both");
   add("of_an_unknown_view", {{"bufferView", 9}, {"mimeType", "image/png"}},
       "image 0 names bufferView 9");
+  GltfBuilder avif = blended();
+  avif.add("images", {{"uri", "leaf.avif"}});
+  avif.doc["textures"][0] = {{"extensions", {{"EXT_texture_avif", {{"source", 0}}}}}};
+  cases.push_back({"image_of_avif_alone", as_glb(avif), "exists only as EXT_texture_avif"});
   GltfBuilder webp = blended();
-  webp.add("images", {{"uri", "leaf.webp"}});
-  webp.doc["textures"][0] = {{"extensions", {{"EXT_texture_webp", {{"source", 0}}}}}};
-  cases.push_back({"image_of_webp_alone", as_glb(webp), "exists only as EXT_texture_webp"});
+  webp.doc["textures"][0] = {{"extensions", {{"EXT_texture_webp", {{"source", 5}}}}}};
+  cases.push_back({"image_of_webp_that_is_absent", as_glb(webp), "texture 0 names image 5"});
   GltfBuilder none = blended();
   none.doc["textures"][0] = json::object();
   cases.push_back({"image_of_no_source", as_glb(none), "texture 0 of material 0 has no image"});

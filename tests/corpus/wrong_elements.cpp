@@ -191,9 +191,9 @@ const Damage kDamages[] = {
        d["extensionsUsed"] = d["extensionsRequired"] = {"KHR_draco_mesh_compression"};
      },
      "requires the extension KHR_draco_mesh_compression"},
-    {"ExtensionMeshoptRequired",
-     [](json& d) { d["extensionsUsed"] = d["extensionsRequired"] = {"EXT_meshopt_compression"}; },
-     "requires the extension EXT_meshopt_compression"},
+    {"ExtensionLaterMeshoptRequired",
+     [](json& d) { d["extensionsUsed"] = d["extensionsRequired"] = {"KHR_meshopt_compression"}; },
+     "requires the extension KHR_meshopt_compression"},
     {"ExtensionBasisRequired",
      [](json& d) { d["extensionsUsed"] = d["extensionsRequired"] = {"KHR_texture_basisu"}; },
      "requires the extension KHR_texture_basisu"},

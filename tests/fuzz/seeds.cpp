@@ -2,6 +2,7 @@
 // The command `seeds FOLDER` makes the folders FOLDER/gltf, image, radiance_hdr, exr, csv, npy, ply
 // and suns.
 #include <fmt/format.h>
+#include <webp/encode.h>
 
 #include <cstdio>
 #include <filesystem>
@@ -14,6 +15,7 @@
 #include "corpus/corpus.hpp"
 #include "dapple/film.hpp"
 #include "points/point_file.hpp"
+#include "support/files/compressed_gltf.hpp"
 #include "support/files/gltf_builder.hpp"
 
 namespace {
@@ -35,6 +37,19 @@ void write_scene(const std::filesystem::path& folder, const std::string& name,
                  const dapple::test::SceneFiles& files) {
   const auto scene = files.files.find(files.scene);
   if (scene != files.files.end()) write_seed(folder / name, scene->second);
+}
+
+void write_webp_images(const std::filesystem::path& folder) {
+  constexpr int kSize = 5;
+  Bytes rgba(4 * kSize * kSize);
+  for (std::size_t i = 0; i < rgba.size(); ++i) rgba[i] = static_cast<std::uint8_t>(7 * i);
+  std::uint8_t* data = nullptr;
+  std::size_t size = WebPEncodeLosslessRGBA(rgba.data(), kSize, kSize, 4 * kSize, &data);
+  write_seed(folder / "lossless.webp", Bytes(data, data + size));
+  WebPFree(data);
+  size = WebPEncodeRGBA(rgba.data(), kSize, kSize, 4 * kSize, 50, &data);
+  write_seed(folder / "lossy.webp", Bytes(data, data + size));
+  WebPFree(data);
 }
 
 /// A small PNG of each colour type and depth.
@@ -120,7 +135,10 @@ int main(int argc, char** argv) {
     write_scene(folder / "gltf", one.name, one.files);
   for (const auto& one : dapple::test::tricky_corpus())
     write_scene(folder / "gltf", one.name, one.files);
+  write_seed(folder / "gltf" / "compressed",
+             dapple::test::compressed(dapple::test::one_triangle()).glb());
   write_images(folder / "image");
+  write_webp_images(folder / "image");
   write_radiance_images(folder / "radiance_hdr");
   write_exr_images(folder / "exr");
   write_points_and_suns(folder);

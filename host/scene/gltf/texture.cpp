@@ -12,9 +12,9 @@
 namespace dapple::gltf {
 namespace {
 
-/// The extensions for image formats other than PNG and JPEG.
-constexpr const char* kOtherFormats[] = {"KHR_texture_basisu", "EXT_texture_webp",
-                                         "EXT_texture_avif", "MSFT_texture_dds"};
+/// The extensions for image formats other than PNG, JPEG and WebP.
+constexpr const char* kOtherFormats[] = {"KHR_texture_basisu", "EXT_texture_avif",
+                                         "MSFT_texture_dds"};
 
 /// The limit of the texels of all textures, alpha and colour. An image's file can be a thousand
 /// times smaller than its texels.
@@ -34,6 +34,7 @@ std::string image_name(const Document& document, int image) {
 
 int image_of(const Document& document, int texture, const std::string& user) {
   const auto& given = document.model.textures[static_cast<std::size_t>(texture)];
+  if (const int webp = webp_image(given); webp >= 0) return webp;
   if (given.source >= 0) return given.source;
   for (const char* extension : kOtherFormats) {
     if (!given.extensions.contains(extension)) continue;

@@ -1,4 +1,4 @@
-// Decodes PNG and JPEG images with stb_image: see image.hpp.
+// Decodes PNG and JPEG images with stb_image, WebP by webp.hpp: see image.hpp.
 #include "scene/images/image.hpp"
 
 #include <algorithm>
@@ -12,6 +12,7 @@
 #include "dapple/error.hpp"
 #include "scene/images/color.hpp"
 #include "scene/images/image_structure.hpp"
+#include "scene/images/webp.hpp"
 
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC
@@ -31,9 +32,14 @@ struct StbiFree {
 };
 
 struct Pixels {
-  std::unique_ptr<stbi_uc, StbiFree> bytes;
+  std::unique_ptr<std::uint8_t, void (*)(void*)> bytes{nullptr, stbi_image_free};
+  std::size_t channels = 4;  ///< 2: grey and alpha; 3: RGB; 4: RGB and alpha
   std::size_t width = 0;
   std::size_t height = 0;
+
+  [[nodiscard]] const std::uint8_t* pixel(std::size_t i) const {
+    return bytes.get() + channels * i;
+  }
 };
 
 [[noreturn]] void refuse(const std::string& what, const std::string& why) {
@@ -64,7 +70,7 @@ void check_png_size(std::span<const std::uint8_t> bytes, const std::string& what
 /// gigabytes.
 void check_header(std::span<const std::uint8_t> bytes, const std::string& what) {
   const ImageFormat format = image_format(bytes);
-  if (format == ImageFormat::other) refuse(what, "is neither a PNG nor a JPEG image");
+  if (format == ImageFormat::other) refuse(what, "is none of PNG, JPEG and WebP");
   const bool png = format == ImageFormat::png;
   if (png) check_png_size(bytes, what);
   const std::string defect = png ? png_defect(bytes) : jpeg_defect(bytes);
@@ -129,8 +135,18 @@ void check_palette(std::span<const std::uint8_t> png, const std::string& what) {
   }
 }
 
-/// Decodes to `channels` bytes per pixel: 2 is grey and alpha, 3 is RGB, 4 is RGB and alpha.
+Pixels decode_webp(std::span<const std::uint8_t> bytes, const std::string& what) {
+  WebpImage image(bytes);
+  if (!image.defect().empty()) refuse(what, image.defect());
+  check_size(image.width(), image.height(), what);
+  Pixels pixels{{image.decode_rgba(), WebpImage::free}, 4, image.width(), image.height()};
+  if (!pixels.bytes) refuse(what, "is corrupt (its WebP data)");
+  return pixels;
+}
+
+/// Decodes to `channels` bytes per pixel, WebP to four.
 Pixels decode(std::span<const std::uint8_t> bytes, int channels, const std::string& what) {
+  if (image_format(bytes) == ImageFormat::webp) return decode_webp(bytes, what);
   if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
     refuse(what, "has more than 2^31 bytes");
   }
@@ -146,6 +162,7 @@ Pixels decode(std::span<const std::uint8_t> bytes, int channels, const std::stri
   if (!pixels.bytes) {
     refuse(what, std::string("is corrupt (") + stbi_failure_reason() + ")");
   }
+  pixels.channels = static_cast<std::size_t>(channels);
   pixels.width = static_cast<std::size_t>(width);
   pixels.height = static_cast<std::size_t>(height);
   return pixels;
@@ -160,7 +177,7 @@ AlphaImage decode_alpha(std::span<const std::uint8_t> bytes, const std::string& 
   image.height = static_cast<std::uint32_t>(pixels.height);
   image.alpha.resize(pixels.width * pixels.height);
   for (std::size_t i = 0; i < image.alpha.size(); ++i) {
-    image.alpha[i] = pixels.bytes.get()[2 * i + 1];
+    image.alpha[i] = pixels.pixel(i)[pixels.channels - 1];
   }
   return image;
 }
@@ -172,7 +189,7 @@ ColorImage decode_color(std::span<const std::uint8_t> bytes, const std::string& 
                    static_cast<std::uint32_t>(pixels.height), std::vector<std::uint8_t>(3 * count),
                    std::vector<std::uint8_t>(count)};
   for (std::size_t i = 0; i < count; ++i) {
-    const stbi_uc* pixel = pixels.bytes.get() + 4 * i;
+    const std::uint8_t* pixel = pixels.pixel(i);
     std::copy_n(pixel, 3, &image.rgb[3 * i]);
     image.alpha[i] = pixel[3];
   }
@@ -183,7 +200,8 @@ Imath::V3f mean_linear_color(std::span<const std::uint8_t> bytes, const std::str
   const Pixels pixels = decode(bytes, 3, what);
   const std::size_t count = pixels.width * pixels.height;
   std::array<std::array<std::uint64_t, 256>, 3> histogram{};
-  for (std::size_t i = 0; i < 3 * count; ++i) ++histogram[i % 3][pixels.bytes.get()[i]];
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t c = 0; c < 3; ++c) ++histogram[c][pixels.pixel(i)[c]];
   Imath::V3f mean(0.0f);
   for (int channel = 0; channel < 3; ++channel) {
     double sum = 0;

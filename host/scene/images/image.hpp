@@ -1,6 +1,6 @@
-// Decodes PNG and JPEG images from memory. In: the bytes of a file; out: the alpha channel, for
-// opacity, all channels, for albedo, or the mean colour, for emission. Only image.cpp and
-// radiance_hdr.cpp use stb_image.
+// Decodes PNG, JPEG and WebP images from memory. In: the bytes of a file; out: the alpha channel,
+// for opacity, all channels, for albedo, or the mean colour, for emission. Only image.cpp and
+// radiance_hdr.cpp use stb_image, only webp.cpp libwebp.
 #pragma once
 
 #include <Imath/ImathVec.h>

@@ -84,6 +84,9 @@ ImageFormat image_format(Span bytes) {
       std::equal(kPngSignature.begin(), kPngSignature.end(), bytes.begin())) {
     return ImageFormat::png;
   }
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  if (text.starts_with("RIFF") && text.size() >= 12 && text.substr(8, 4) == "WEBP")
+    return ImageFormat::webp;
   const bool jpeg = bytes.size() >= 3 && bytes[0] == 0xff && bytes[1] == 0xd8 && bytes[2] == 0xff;
   return jpeg ? ImageFormat::jpeg : ImageFormat::other;
 }

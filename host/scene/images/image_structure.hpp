@@ -9,7 +9,7 @@
 
 namespace dapple {
 
-enum class ImageFormat : std::uint8_t { png, jpeg, other };
+enum class ImageFormat : std::uint8_t { png, jpeg, webp, other };
 
 /// Finds the format from the first bytes of a file.
 ImageFormat image_format(std::span<const std::uint8_t> bytes);

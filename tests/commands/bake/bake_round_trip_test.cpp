@@ -4,6 +4,7 @@
 
 #include "dapple/render.hpp"
 #include "dapple/scene.hpp"
+#include "support/files/compressed_gltf.hpp"
 #include "support/programs/bake_command.hpp"
 #include "support/scenes/garden.hpp"
 
@@ -106,6 +107,55 @@ TEST_F(BakeRoundTrip, OfInstancesChangesNothing) { expect_same_picture("--to ins
 
 TEST_F(BakeRoundTrip, OfUniqueMeshesChangesNothing) {
   expect_same_picture("--instances unique --channel _AO");
+}
+
+class CompressedRoundTrip : public BakeRoundTrip {
+ protected:
+  CompressedRoundTrip() { write("in.glb", test::compressed(test::Garden().file).glb()); }
+
+  [[nodiscard]] static int compressed_views(const json& doc) {
+    int count = 0;
+    for (const json& view : doc["bufferViews"]) count += view.contains("extensions") ? 1 : 0;
+    return count;
+  }
+};
+
+TEST_F(CompressedRoundTrip, CompressedViewsStayCompressed) {
+  const int before = compressed_views(document("in.glb"));
+  EXPECT_GT(before, 10);
+  for (const char* output : {"out.glb", "out.gltf"}) {
+    expect_same_picture("--channel _AO --passes ao,bent", {}, output);
+    EXPECT_EQ(compressed_views(document(output)), before);
+  }
+  expect_same_picture("--to texture --size 64 --margin 2");
+  expect_same_picture("--to instance");
+  expect_same_picture("--instances unique --channel _AO");
+}
+
+// Where a file's own buffer cannot be the GLB's, all of them are put into one.
+TEST_F(CompressedRoundTrip, BesideATextFileTheyAreDecompressedIntoAGlb) {
+  ASSERT_EQ(dapple("bake in.glb -o in.gltf --rays 8 -q --channel _AO").code, 0);
+  const Outcome run = dapple("bake in.gltf -o out.glb --rays 8 -q --channel _AO");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const json out = document("out.glb");
+  EXPECT_EQ(compressed_views(out), 0);
+  EXPECT_EQ(out["buffers"].size(), 1u);
+  EXPECT_EQ(out["extensionsRequired"], json{"KHR_mesh_quantization"});
+  EXPECT_EQ(bits_of(picture("out.glb").find("ao.R")->pixels),
+            bits_of(picture("in.glb").find("ao.R")->pixels));
+}
+
+TEST_F(CompressedRoundTrip, TwiceMakesNoLargerFileThanOnce) {
+  for (const char* arguments : {"--channel _AO --passes ao,bent", "--to texture --size 64"}) {
+    SCOPED_TRACE(arguments);
+    const std::string options = " --rays 8 -q " + std::string(arguments);
+    ASSERT_EQ(dapple("bake in.glb -o once.glb" + options).code, 0);
+    ASSERT_EQ(dapple("bake once.glb -o twice.glb" + options).code, 0);
+    EXPECT_NEAR(static_cast<double>(bytes_of(path("twice.glb")).size()),
+                static_cast<double>(bytes_of(path("once.glb")).size()), 200);
+    EXPECT_EQ(bits_of(picture("twice.glb").find("ao.R")->pixels),
+              bits_of(picture("once.glb").find("ao.R")->pixels));
+  }
 }
 
 TEST_F(BakeRoundTrip, KeepsChunksOfOtherTypes) {

@@ -61,8 +61,8 @@ TEST(GltfError, OtherVersionsAreRefused) {
 }
 
 TEST(GltfError, UnknownRequiredExtensionsAreNamed) {
-  for (const char* name : {"KHR_draco_mesh_compression", "EXT_meshopt_compression",
-                           "KHR_texture_basisu", "EXT_texture_webp", "ACME_secret"}) {
+  for (const char* name : {"KHR_draco_mesh_compression", "KHR_meshopt_compression",
+                           "KHR_texture_basisu", "EXT_texture_avif", "ACME_secret"}) {
     GltfBuilder builder = one_triangle();
     builder.doc["extensionsRequired"] = {name};
     expect_says(error_of(builder), name);
@@ -154,7 +154,7 @@ TEST(GltfError, ACorruptImageWhoseAlphaCountsIsNamed) {
   builder.add("images", {{"bufferView", view}, {"name", "atlas"}});
   expect_says(error_of(builder), "image 0 (atlas) of material 0 (\"leaf\"): is corrupt");
   builder.doc["bufferViews"][view]["byteLength"] = 4;
-  expect_says(error_of(builder), "is neither a PNG nor a JPEG image");
+  expect_says(error_of(builder), "is none of PNG, JPEG and WebP");
 }
 
 TEST(GltfError, AnImageTooLargeIsRefusedByItsHeader) {
@@ -173,9 +173,9 @@ TEST(GltfError, AnImageTooLargeIsRefusedByItsHeader) {
 
 TEST(GltfError, ATextureOfAnotherFormatAloneIsNamed) {
   GltfBuilder builder = blended();
-  builder.add("images", {{"uri", "leaf.webp"}});
-  builder.doc["textures"][0] = {{"extensions", {{"EXT_texture_webp", {{"source", 0}}}}}};
-  expect_says(error_of(builder), "exists only as EXT_texture_webp");
+  builder.add("images", {{"uri", "leaf.avif"}});
+  builder.doc["textures"][0] = {{"extensions", {{"EXT_texture_avif", {{"source", 0}}}}}};
+  expect_says(error_of(builder), "exists only as EXT_texture_avif");
 }
 
 TEST(GltfError, AnImageBehindASymbolicLinkOutOfTheFolderIsRefused) {

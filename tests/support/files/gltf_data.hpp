@@ -3,6 +3,7 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <meshoptimizer.h>
 
 #include <algorithm>
 #include <cmath>
@@ -32,10 +33,17 @@ class GltfData {
       doc = json::parse(bytes);
     for (const json& buffer : doc.value("buffers", json::array())) {
       const std::string file = buffer.value("uri", "");
+      if (file.empty() && buffer.contains("extensions")) {
+        buffers_.emplace_back(buffer.at("byteLength").get<std::size_t>(), '\0');
+        continue;
+      }
       const auto side = std::filesystem::path(path).parent_path() / file;
       buffers_.push_back(file.empty() ? binary : film_test::bytes_of(side.string()));
       EXPECT_GE(buffers_.back().size(), buffer.at("byteLength").get<std::size_t>()) << file;
     }
+    for (const json& view : doc.value("bufferViews", json::array()))
+      if (view.contains("extensions"))
+        decompress(view, view["extensions"]["EXT_meshopt_compression"]);
   }
 
   [[nodiscard]] const json& accessor(const json& index) const {
@@ -100,6 +108,26 @@ class GltfData {
     EXPECT_EQ(length % 4, 0u);
     EXPECT_EQ(end + 8 + length, bytes.size());
     binary = bytes.substr(end + 8);
+  }
+
+  /// Without filters.
+  void decompress(const json& view, const json& compressed) {
+    std::string& out = buffers_.at(at(view["buffer"]));
+    const std::string& in = buffers_.at(at(compressed["buffer"]));
+    const std::size_t from = compressed["byteOffset"], size = compressed["byteLength"];
+    const std::size_t to = view["byteOffset"], count = compressed["count"],
+                      stride = compressed["byteStride"];
+    ASSERT_LE(from + size, in.size());
+    ASSERT_LE(to + count * stride, out.size());
+    const std::string mode = compressed["mode"];
+    int (*decode)(void*, std::size_t, std::size_t, const unsigned char*, std::size_t) =
+        meshopt_decodeVertexBuffer;
+    if (mode == "TRIANGLES") decode = meshopt_decodeIndexBuffer;
+    if (mode == "INDICES") decode = meshopt_decodeIndexSequence;
+    EXPECT_EQ(compressed.value("filter", "NONE"), "NONE");
+    EXPECT_EQ(decode(&out[to], count, stride,
+                     reinterpret_cast<const unsigned char*>(in.data()) + from, size),
+              0);
   }
 
   [[nodiscard]] const char* in_view(const json& index, std::size_t offset, std::size_t size) const {

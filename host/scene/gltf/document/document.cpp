@@ -1,4 +1,5 @@
-// Makes a Document from a path: container, JSON, schema, buffers, tinygltf, validation.
+// Makes a Document from a path: container, JSON, schema, buffers and what they compress, tinygltf,
+// validation.
 #include "scene/gltf/document/document.hpp"
 
 #include <charconv>
@@ -7,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "scene/gltf/document/compressed_views.hpp"
 #include "scene/gltf/document/container.hpp"
 #include "scene/gltf/document/element_check.hpp"
 #include "scene/gltf/document/extension_names.hpp"
@@ -71,11 +73,7 @@ class BufferReader {
     const std::string path = resolve_uri(document_.base, uri, what).string();
     const auto known = read_.find(path);
     if (known != read_.end() && known->second.size() >= length) return known->second;
-    document_.bytes += length;
-    if (document_.bytes > kMaxSceneBytes) {
-      fail(who, "brings the scene to {} bytes (at most {})", grouped(document_.bytes),
-           grouped(kMaxSceneBytes));
-    }
+    count_scene_bytes(document_, length, who);
     document_.files.push_back(path);
     return read_[path] = keep(read_regular_file(path, who, {}, length));
   }
@@ -98,25 +96,21 @@ class BufferReader {
   std::map<std::string, std::span<const std::uint8_t>> read_;
 };
 
-bool is_compression_placeholder(const Json& buffer) {
-  const auto extensions = buffer.find("extensions");
-  return extensions != buffer.end() && (extensions->contains("EXT_meshopt_compression") ||
-                                        extensions->contains("KHR_meshopt_compression"));
-}
-
-void load_buffers(Document& document, const Json& buffers,
-                  std::optional<std::span<const std::uint8_t>> binary) {
+/// Reads all buffers that have bytes. Returns the others, which compressed bufferViews fill.
+FallbackBuffers load_buffers(Document& document, const Json& buffers,
+                             std::optional<std::span<const std::uint8_t>> binary) {
   BufferReader reader(document);
+  FallbackBuffers fallbacks;
   for (std::size_t i = 0; i < buffers.size(); ++i) {
     const Json& buffer = buffers[i];
     const std::string what = fmt::format("{}: buffer {}", document.file, i);
     const std::uint64_t length = buffer["byteLength"].get<std::uint64_t>();
     const bool has_uri = buffer.contains("uri");
     const bool has_bytes = has_uri || (i == 0 && binary);
-    if (!has_bytes && is_compression_placeholder(buffer)) {
-      fail(what,
-           "holds only EXT_meshopt_compression data, which dapple cannot read; export the "
-           "scene uncompressed");
+    if (!has_bytes && is_fallback_buffer(buffer)) {
+      fallbacks.emplace(i, length);
+      document.buffers.emplace_back();
+      continue;
     }
     if (!has_bytes) fail(what, "has no uri, and the file has no binary chunk for it");
     const auto bytes =
@@ -127,6 +121,7 @@ void load_buffers(Document& document, const Json& buffers,
     }
     document.buffers.push_back(bytes.first(length));
   }
+  return fallbacks;
 }
 
 /// Lists where images are. Every uri is resolved, also of images that are not needed, so that a uri
@@ -222,10 +217,22 @@ void parse_model(Document& document, Json& root) {
 
 }  // namespace
 
+void count_scene_bytes(Document& document, std::uint64_t bytes, const std::string& who) {
+  document.bytes += bytes;
+  if (document.bytes <= kMaxSceneBytes) return;
+  fail(who, "brings the scene to {} bytes (at most {})", grouped(document.bytes),
+       grouped(kMaxSceneBytes));
+}
+
 std::span<const std::uint8_t> view_bytes(const Document& document, int buffer_view) {
   const auto& view = document.model.bufferViews[static_cast<std::size_t>(buffer_view)];
   return document.buffers[static_cast<std::size_t>(view.buffer)].subspan(view.byteOffset,
                                                                          view.byteLength);
+}
+
+int webp_image(const tinygltf::Texture& texture) {
+  const auto webp = texture.extensions.find(extension::kWebp);
+  return webp == texture.extensions.end() ? -1 : webp->second.Get("source").GetNumberAsInt();
 }
 
 Document load_document(const std::string& path, bool allow_outside) {
@@ -245,7 +252,8 @@ Document load_document(const std::string& path, bool allow_outside) {
   check_extensions(root.value("extensionsRequired", std::vector<std::string>()), path);
   document.motion = read_motion(root, path);
   if (root.contains("nodes")) check_transforms(root["nodes"], path);
-  load_buffers(document, take(root, "buffers"), container.binary);
+  const FallbackBuffers fallbacks = load_buffers(document, take(root, "buffers"), container.binary);
+  decode_compressed_views(document, elements(root, "bufferViews"), fallbacks);
   find_images(document, take(root, "images"));
   parse_model(document, root);
   validate(document);

@@ -35,7 +35,7 @@ struct Document {
   std::vector<nlohmann::json> camera_extras;         ///< by camera; null: none
   std::map<int, nlohmann::json> camera_node_extras;  ///< by node, of those that place a camera
   std::vector<std::string> files;  ///< paths of the scene file, its buffers and its images
-  std::uint64_t bytes = 0;         ///< of the scene file and of the buffers' files
+  std::uint64_t bytes = 0;  ///< of the scene file, the buffers' files and what was decompressed
   std::vector<std::string> notes;  ///< what the file may not have, and is read nevertheless
 };
 
@@ -43,8 +43,15 @@ struct Document {
 /// Throws Error input.
 Document load_document(const std::string& path, bool allow_outside = false);
 
+/// Adds to document.bytes. Throws Error input, naming `who`, where a scene has too many.
+void count_scene_bytes(Document& document, std::uint64_t bytes, const std::string& who);
+
 /// Returns the bytes of a validated bufferView.
 std::span<const std::uint8_t> view_bytes(const Document& document, int buffer_view);
+
+/// Returns the image that EXT_texture_webp gives a texture, which stands in for its `source`; -1:
+/// none.
+int webp_image(const tinygltf::Texture& texture);
 
 /// Returns the number of morph targets of a mesh: the maximum over its primitives.
 std::uint64_t morph_target_count(const Document& document, int mesh);

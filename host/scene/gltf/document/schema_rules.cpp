@@ -63,12 +63,22 @@ constexpr Rule kAsset[] = {required({"version", Kind::text}),
 
 constexpr Rule kBuffer[] = {{"uri", Kind::text}, required({"byteLength", Kind::size})};
 
+constexpr std::string_view kMeshoptModes[] = {"ATTRIBUTES", "TRIANGLES", "INDICES"};
+constexpr std::string_view kMeshoptFilters[] = {"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"};
+constexpr Rule kMeshopt[] = {
+    required({"buffer", Kind::index}),    {"byteOffset", Kind::count},
+    required({"byteLength", Kind::size}), required({"byteStride", Kind::size}),
+    required({"count", Kind::size}),      required(word("mode", kMeshoptModes)),
+    word("filter", kMeshoptFilters)};
+constexpr Rule kBufferViewExtensions[] = {object(extension::kMeshopt, kMeshopt)};
+
 constexpr int kTargets[] = {34962, 34963};
 constexpr Rule kBufferView[] = {required({"buffer", Kind::index}),
                                 {"byteOffset", Kind::count},
                                 required({"byteLength", Kind::size}),
                                 {"byteStride", Kind::stride},
-                                code("target", kTargets)};
+                                code("target", kTargets),
+                                object("extensions", kBufferViewExtensions)};
 
 constexpr int kComponentTypes[] = {5120, 5121, 5122, 5123, 5125, 5126};
 constexpr std::string_view kElementTypes[] = {"SCALAR", "VEC2", "VEC3", "VEC4",
@@ -100,7 +110,10 @@ constexpr int kWraps[] = {33071, 33648, 10497};
 constexpr Rule kSampler[] = {code("magFilter", kMagFilters), code("minFilter", kMinFilters),
                              code("wrapS", kWraps), code("wrapT", kWraps)};
 
-constexpr Rule kTexture[] = {{"sampler", Kind::index}, {"source", Kind::index}};
+constexpr Rule kWebp[] = {required({"source", Kind::index})};
+constexpr Rule kTextureExtensions[] = {object(extension::kWebp, kWebp)};
+constexpr Rule kTexture[] = {
+    {"sampler", Kind::index}, {"source", Kind::index}, object("extensions", kTextureExtensions)};
 
 constexpr Rule kTextureTransform[] = {numbers("offset", 2),
                                       {"rotation", Kind::number},

@@ -131,7 +131,8 @@ class Validator {
 
   void check_texture(std::size_t i) const {
     const std::string who = fmt::format("texture {}", i);
-    check_.index(who, "image", model_.textures[i].source, document_.images.size());
+    for (const int image : {model_.textures[i].source, webp_image(model_.textures[i])})
+      check_.index(who, "image", image, document_.images.size());
     check_.index(who, "sampler", model_.textures[i].sampler, model_.samplers.size());
   }
 

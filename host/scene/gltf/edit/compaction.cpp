@@ -124,9 +124,10 @@ void for_each_extension(const Json& element, const std::function<void(const std:
 /// Whether all references in the document are among those that are visited here.
 bool is_known_whole(const Json& document) {
   static const std::set<std::string, std::less<>> kKnown = {
-      extension::kDraco,       extension::kInstancing,       "EXT_texture_webp",
-      "KHR_animation_pointer", extension::kLights,           extension::kQuantization,
-      "KHR_texture_basisu",    extension::kTextureTransform, "KHR_xmp_json_ld"};
+      extension::kDraco,        extension::kInstancing,  extension::kMeshopt,
+      extension::kWebp,         "KHR_animation_pointer", extension::kLights,
+      extension::kQuantization, "KHR_texture_basisu",    extension::kTextureTransform,
+      "KHR_xmp_json_ld"};
   bool are_known = true;
   for_each_extension(document, [&](const std::string& name) {
     are_known = are_known && (kKnown.contains(name) || name.starts_with("KHR_materials_"));
@@ -179,6 +180,18 @@ ByteRange range_of(const Json& view) {
   return {begin, begin + view["byteLength"].get<std::size_t>()};
 }
 
+/// Calls visit(part) for what of views is in the first buffer: a view, or the compressed data that
+/// its extension names.
+template <class Views>
+void for_each_part(Views& views, const auto& visit) {
+  for (auto& view : views) {
+    if (view["buffer"] == 0) visit(view);
+    if (!has_extension(view, extension::kMeshopt)) continue;
+    auto& compressed = view["extensions"][extension::kMeshopt];
+    if (compressed["buffer"] == 0) visit(compressed);
+  }
+}
+
 /// In order, those that overlap or touch as one.
 std::vector<ByteRange> merged(std::vector<ByteRange> ranges) {
   std::sort(ranges.begin(), ranges.end());
@@ -221,8 +234,7 @@ std::vector<ByteRange> whole_eights(const std::vector<ByteRange>& ranges) {
 void cut_bytes(const std::vector<Json>& dropped, Json& document, std::string& binary) {
   const auto ranges_of = [](const auto& views) {
     std::vector<ByteRange> ranges;
-    for (const Json& view : views)
-      if (view["buffer"] == 0) ranges.push_back(range_of(view));
+    for_each_part(views, [&](const Json& part) { ranges.push_back(range_of(part)); });
     return merged(std::move(ranges));
   };
   Json& views = document["bufferViews"];
@@ -235,12 +247,11 @@ void cut_bytes(const std::vector<Json>& dropped, Json& document, std::string& bi
     cut_by_end[done = end] = cut_count += end - begin;
   }
   binary = std::move(kept.append(binary, done));
-  for (Json& view : views) {
-    if (view["buffer"] != 0) continue;
-    const std::size_t begin = range_of(view).first;
+  for_each_part(views, [&](Json& part) {
+    const std::size_t begin = range_of(part).first;
     const std::size_t before = std::prev(cut_by_end.upper_bound(begin))->second;
-    if (before > 0) view["byteOffset"] = begin - before;
-  }
+    if (before > 0) part["byteOffset"] = begin - before;
+  });
 }
 
 }  // namespace

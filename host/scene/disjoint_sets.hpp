@@ -1,5 +1,5 @@
-// Disjoint sets (union-find), for the connected surfaces of a mesh. In: which vertices or triangles
-// belong together. Out: a root for each set.
+// Disjoint sets (union-find), for the connected surfaces and strands of a mesh. In: which vertices
+// or triangles belong together. Out: a root for each set.
 #pragma once
 
 #include <algorithm>
