@@ -70,10 +70,10 @@ MUTATIONS = [
         r"^(Packet|Traversal|Oracle|OracleRays)\."),
     Mutation(
         "swapped-axes-of-opacity", "kernels/occlusion/packet_depth_many.clh",
-        "  const float8 y = decode_depths(node, 1) * boxes->faces[1];\n"
-        "  const float8 z = decode_depths(node, 2) * boxes->faces[2];\n",
-        "  const float8 y = decode_depths(node, 2) * boxes->faces[1];\n"
-        "  const float8 z = decode_depths(node, 1) * boxes->faces[2];\n",
+        "  const float8 y = decode_depths(node, 1) * seen.faces[1];\n"
+        "  const float8 z = decode_depths(node, 2) * seen.faces[2];\n",
+        "  const float8 y = decode_depths(node, 2) * seen.faces[1];\n"
+        "  const float8 z = decode_depths(node, 1) * seen.faces[2];\n",
         r"^(Packet|PacketPicture|PrefilterConvergence|Traversal)\."),
     Mutation(
         "swapped-axes-of-opacity-at-points", "kernels/occlusion/packet_depth_one.clh",

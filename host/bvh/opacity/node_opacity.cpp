@@ -54,10 +54,22 @@ NormalMoments NormalMoments::placed(const M44f& to_world) const {
   return out;
 }
 
+namespace {
+
+/// A power of two by which the largest of these numbers, which are not negative, is from 1 to 2:
+/// their ratios matter, and the squares of areas exceed a float. 1 if they are 0 or not finite.
+float unit_of(float a, float b, float c) {
+  const float most = std::max({a, b, c});
+  return std::isnormal(most) ? std::ldexp(1.0f, -std::max(std::ilogb(most), -126)) : 1.0f;
+}
+
+}  // namespace
+
 V3f NormalMoments::correlation() const {
+  const float unit = unit_of(sum[0], sum[1], sum[2]);
   const auto of = [&](int pair, int i, int j) {
-    const float product = sum[i] * sum[j];
-    return product > 0.0f ? std::clamp(sum[pair] / std::sqrt(product), -1.0f, 1.0f) : 0.0f;
+    const float product = (unit * sum[i]) * (unit * sum[j]);
+    return product > 0.0f ? std::clamp(unit * sum[pair] / std::sqrt(product), -1.0f, 1.0f) : 0.0f;
   };
   return {of(3, 0, 1), of(4, 1, 2), of(5, 2, 0)};
 }
@@ -205,7 +217,7 @@ constexpr float kCompensated = 0.7f;
 class DirectionalOpacity {
  public:
   DirectionalOpacity(const NodeOpacity& opacity, const V3f& size)
-      : faces_(size.y * size.z, size.z * size.x, size.x * size.y),
+      : faces_(in_units(V3f(size.y * size.z, size.z * size.x, size.x * size.y))),
         axes_(opacity.axes),
         depths_(depth_of(axes_.x), depth_of(axes_.y), depth_of(axes_.z)),
         correlation_(opacity.normals.correlation()),
@@ -250,6 +262,8 @@ class DirectionalOpacity {
   }
 
  private:
+  static V3f in_units(const V3f& faces) { return faces * unit_of(faces.x, faces.y, faces.z); }
+
   /// Sets all members but `opacity`.
   [[nodiscard]] Views by_model(Four area, Four depth, Four chords) const {
     const Four variance = depth_variances(depth, chords, compensated_, tilt_);
@@ -266,7 +280,8 @@ class DirectionalOpacity {
     return root(largest(x * x + y * y + z * z + 2.0f * mixed, all(0.0f))) / (area + 1e-37f);
   }
 
-  V3f faces_, axes_, depths_, correlation_;
+  V3f faces_;  ///< of the box; only their ratios matter
+  V3f axes_, depths_, correlation_;
   float clumping_, mass_concentration_;
   float compensated_;  ///< mass concentration times kCompensated
   float tilt_;         ///< as in depth_variances()

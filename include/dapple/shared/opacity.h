@@ -90,13 +90,15 @@ DAPPLE_FUNCTION bool footprint_covers(float needed, float first_area, float soli
 DAPPLE_FUNCTION float box_depth(float depth_x, float depth_y, float depth_z, float correlation_xy,
                                 float correlation_yz, float correlation_zx, float facing_x,
                                 float facing_y, float facing_z) {
-  const float x = depth_x * facing_x;
-  const float y = depth_y * facing_y;
-  const float z = depth_z * facing_z;
+  /* Parts of the area first: squares of areas exceed a float where boxes have 1e10 units. */
+  const float per_area = 1.0f / (facing_x + facing_y + facing_z + 1e-37f);
+  const float x = depth_x * (facing_x * per_area);
+  const float y = depth_y * (facing_y * per_area);
+  const float z = depth_z * (facing_z * per_area);
   const float square =
       x * x + y * y + z * z +
       2.0f * (correlation_xy * x * y + correlation_yz * y * z + correlation_zx * z * x);
-  return sqrt(square > 0.0f ? square : 0.0f) / (facing_x + facing_y + facing_z + 1e-37f);
+  return sqrt(square > 0.0f ? square : 0.0f);
 }
 
 /* Optical depth of a ray whose chord is `chord` times the mean chord of the box. */
