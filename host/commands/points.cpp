@@ -147,21 +147,34 @@ PointList points_of(const Arguments& a, const Scene& scene) {
   return triangle_points(scene);
 }
 
-void set_lights(const Arguments& a, Scene& scene) {
-  if (!a.lights.empty()) use_lights(scene, load_lights(a.lights));
-  if (a.sky.empty()) return;
+Light sky_of(const Arguments& a) {
   if (!names_image(a.sky)) {
     Light sky = a.sky == "uniform" ? uniform_sky() : overcast_sky();
     sky.radiance *= a.sky_irradiance;
-    scene.lights.push_back(std::move(sky));
-    return;
+    return sky;
   }
   if (!std::filesystem::exists(a.sky))
     throw Error(ErrorKind::usage, fmt::format("--sky is {}; it must be uniform, overcast or an "
                                               "image file (.exr, .hdr)",
                                               a.sky));
-  scene.lights.push_back(dome_light("sky", a.sky));
-  scene.lights.back().rotation = dome_rotation("--sky-rotation", a.sky_rotation);
+  Light sky = dome_light("sky", a.sky);
+  sky.rotation = dome_rotation("--sky-rotation", a.sky_rotation);
+  return sky;
+}
+
+/// The sky comes first, so that it has the columns that its users expect.
+void set_lights(const Arguments& a, Scene& scene) {
+  if (!a.lights.empty()) use_lights(scene, load_lights(a.lights));
+  if (a.sky.empty()) return;
+  Light sky = sky_of(a);
+  const bool is_taken =
+      std::ranges::any_of(scene.lights, [&](const Light& light) { return light.name == sky.name; });
+  if (is_taken)
+    scene.warnings.push_back(fmt::format(
+        "{0}_r, {0}_g and {0}_b are of --sky; the scene's own light of that name has a number",
+        sky.name));
+  scene.lights.insert(scene.lights.begin(), std::move(sky));
+  for (Instance& instance : scene.instances) instance.light += instance.light >= 0 ? 1 : 0;
 }
 
 /// All input files, which no output may replace.

@@ -122,7 +122,10 @@ BiasCorrection BiasSample::of_occlusion(const std::string& name, const std::vect
   return compare({name}, [&](OcclusionOptions options) {
     options.distance = distance;
     options.falloff = falloff;
-    const auto found = occlusion(on_.device, on_.uploaded, points_, normals, options, control());
+    QueryPoints query{points_, normals};
+    query.surfaces = normals_;
+    const auto found =
+        point_occlusion(on_.device, on_.uploaded, query, options, false, control()).ao;
     std::vector<Values> of_one(1);
     for (std::uint32_t i = 0; i < found.size(); ++i) {
       of_one[0].values.push_back(double{found[i]});
@@ -160,7 +163,8 @@ std::vector<BiasCorrection> BiasSample::of_rings(const std::vector<ZenithRing>& 
   std::vector<std::string> names;
   for (std::size_t k = 0; k < rings.size(); ++k) names.push_back(gap_name(k));
   return compare(names, [&](const OcclusionOptions& of) {
-    const auto means = gap_fractions(on_, rings, points_, of, [&](double) { return !stop_(); });
+    const auto means =
+        gap_fractions(on_, rings, points_, normals_, of, [&](double) { return !stop_(); });
     std::vector<Values> of_rings(rings.size());
     for (std::size_t k = 0; k < rings.size(); ++k)
       for (std::uint32_t i = 0; i < points_.size(); ++i) {

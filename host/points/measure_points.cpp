@@ -153,8 +153,11 @@ class Measurement {
     const std::vector<V3f> up(points_.size(), V3f(0, 1, 0));
     SetSums sums(points_.size());
     for (int set = 0; set < kPointSets; ++set) {
-      const std::vector<float> found =
-          occlusion(on_.device, on_.uploaded, points_, up, occlusion_options(set), stopping());
+      QueryPoints query{points_, up};
+      query.surfaces = normals_;
+      const std::vector<float> found = point_occlusion(on_.device, on_.uploaded, query,
+                                                       occlusion_options(set), false, stopping())
+                                           .ao;
       sums.add([&](std::size_t i) { return double{found[i]}; });
       if (!step()) return;
     }
@@ -177,8 +180,9 @@ class Measurement {
     const std::vector<ZenithRing> rings = zenith_rings(options_.rings);
     std::vector<SetSums> sums(rings.size(), SetSums(points_.size()));
     for (int set = 0; set < kPointSets; ++set) {
-      const std::vector<double> means = gap_fractions(on_, rings, points_, occlusion_options(set),
-                                                      [&](double part) { return step(part); });
+      const std::vector<double> means =
+          gap_fractions(on_, rings, points_, normals_, occlusion_options(set),
+                        [&](double part) { return step(part); });
       if (result_.interrupted) return;
       for (std::size_t k = 0; k < rings.size(); ++k)
         sums[k].add([&](std::size_t i) { return means[i * rings.size() + k]; });
@@ -194,7 +198,8 @@ class Measurement {
   void measure_lights() {
     const std::vector<Light>& lights = on_.scene.lights;
     const std::vector<LightLayer> layers = light_layers(lights);
-    std::vector<SetSums> sums(3 * layers.size(), SetSums(points_.size())), all = sums;
+    std::vector<SetSums> sums(3 * layers.size(), SetSums(points_.size()));
+    std::vector<std::vector<double>> all(sums.size(), std::vector<double>(points_.size()));
     for (int set = 0; set < kPointSets; ++set) {
       const OcclusionOptions of = occlusion_options(set);
       const auto found = irradiance(on_.device, on_.uploaded, lights, points_, normals_,
@@ -208,7 +213,7 @@ class Measurement {
         sums[k].add(
             [&](std::size_t i) { return sum_of(found, layer, &PointIrradiance::irradiance, i)[c]; },
             whole);
-        all[k].add(whole);
+        for (std::size_t i = 0; i < points_.size(); ++i) all[k][i] += whole(i) / kPointSets;
       }
       if (!step()) return;
     }
@@ -218,7 +223,7 @@ class Measurement {
     for (std::size_t k = 0; k < sums.size(); ++k)
       sums[k].store(
           layers[k / 3].name + "_" + "rgb"[k % 3], bias[k / 3],
-          [&](std::size_t i) { return all[k].mean(i); }, result_.columns);
+          [&](std::size_t i) { return all[k][i]; }, result_.columns);
   }
 
   void measure_suns() {

@@ -47,11 +47,11 @@ std::string_view value_of(std::string_view header, const std::string& key) {
   return header;
 }
 
-/// Takes the next 'text' out of `from`; empty if there is none before `end`.
+/// Takes the next 'text' or "text" out of `from`; empty if there is none before `end`.
 std::string_view take_quoted(std::string_view& from, char end) {
-  const std::size_t open = from.find('\'');
+  const std::size_t open = from.find_first_of("'\"");
   if (open == std::string_view::npos || from.find(end) < open) return {};
-  const std::size_t close = from.find('\'', open + 1);
+  const std::size_t close = from.find(from[open], open + 1);
   if (close == std::string_view::npos) return {};
   const std::string_view text = from.substr(open + 1, close - open - 1);
   from.remove_prefix(close + 1);

@@ -16,7 +16,9 @@ inline OcclusionOptions rays_of_set(const PointOptions& options, int set) {
   of_set.rays = options.rays / kPointSets;
   of_set.estimator = options.estimator;
   of_set.footprint = options.footprint;
-  of_set.seed = options.seed * kPointSets + static_cast<std::uint32_t>(set);
+  // The bits that the product loses count, too.
+  of_set.seed = (options.seed * kPointSets + static_cast<std::uint32_t>(set)) ^
+                (options.seed >> 29) * 0x9e3779b8u;
   return of_set;
 }
 

@@ -29,8 +29,8 @@ std::vector<ZenithRing> zenith_rings(int count) {
   return rings;
 }
 
-void fill_ring_rays(const V3f& point, const ZenithRing& ring, std::uint32_t random,
-                    std::span<Ray> rays) {
+void fill_ring_rays(const V3f& point, const V3f& normal, const ZenithRing& ring,
+                    std::uint32_t random, std::span<Ray> rays) {
   using std::numbers::pi;
   const double golden = pi * (3 - std::sqrt(5.0));
   const auto count = static_cast<double>(rays.size());
@@ -40,7 +40,7 @@ void fill_ring_rays(const V3f& point, const ZenithRing& ring, std::uint32_t rand
     const double y =
         ring.cos_inner + (ring.cos_outer - ring.cos_inner) * std::min(1.0, (i + shift) / count);
     const double radius = std::sqrt(std::max(0.0, 1 - y * y)), angle = turn + golden * i;
-    rays[i] = point_ray(point, V3f(0, 1, 0),
+    rays[i] = point_ray(point, normal,
                         V3f(static_cast<float>(radius * std::cos(angle)), static_cast<float>(y),
                             static_cast<float>(radius * std::sin(angle))),
                         static_cast<float>(solid_angle), hash_of(random, i));
@@ -48,14 +48,16 @@ void fill_ring_rays(const V3f& point, const ZenithRing& ring, std::uint32_t rand
 }
 
 std::vector<double> gap_fractions(const SceneOfPoints& on, const std::vector<ZenithRing>& rings,
-                                  std::span<const V3f> points, const OcclusionOptions& of_ring,
+                                  std::span<const V3f> points, std::span<const V3f> normals,
+                                  const OcclusionOptions& of_ring,
                                   const std::function<bool(double)>& step) {
   const auto each = static_cast<std::size_t>(std::max(1, of_ring.rays));
   std::vector<double> means(points.size() * rings.size());
   const auto make = [&](std::size_t i, std::span<Ray> rays) {
     const std::uint32_t of_point = hash_of(of_ring.seed, static_cast<std::uint32_t>(i));
     for (std::size_t k = 0; k < rings.size(); ++k)
-      fill_ring_rays(points[i], rings[k], hash_of(of_point, static_cast<std::uint32_t>(k)),
+      fill_ring_rays(points[i], normals[i], rings[k],
+                     hash_of(of_point, static_cast<std::uint32_t>(k)),
                      rays.subspan(k * each, each));
   };
   const auto add = [&](std::size_t i, std::size_t r, double transmittance) {

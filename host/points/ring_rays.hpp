@@ -20,14 +20,16 @@ struct ZenithRing {
 /// `count` rings: for 5 those of the LAI-2200, else of equal width from 0 to 90 degrees.
 std::vector<ZenithRing> zenith_rings(int count);
 
-/// Fills `rays`, uniform by solid angle within a ring: a Vogel spiral, turned by random bits.
-void fill_ring_rays(const V3f& point, const ZenithRing& ring, std::uint32_t random,
-                    std::span<Ray> rays);
+/// Fills `rays`, uniform by solid angle within a ring: a Vogel spiral, turned by random bits. They
+/// start off the point along `normal`.
+void fill_ring_rays(const V3f& point, const V3f& normal, const ZenithRing& ring,
+                    std::uint32_t random, std::span<Ray> rays);
 
 /// Gap fractions of one set of `of_ring` rays for each ring, [point * rings + ring]. step(part of
 /// the points) after each slice returns false to stop.
 std::vector<double> gap_fractions(const SceneOfPoints& on, const std::vector<ZenithRing>& rings,
-                                  std::span<const V3f> points, const OcclusionOptions& of_ring,
+                                  std::span<const V3f> points, std::span<const V3f> normals,
+                                  const OcclusionOptions& of_ring,
                                   const std::function<bool(double)>& step);
 
 }  // namespace dapple

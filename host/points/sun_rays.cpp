@@ -102,6 +102,7 @@ void SunRays::sample(const V3f& point, const V3f& normal, std::size_t sets, std:
   }
   const double step = sums.back() / static_cast<double>(rays.size());
   std::size_t sun = 0;
+  const double shift_u = (random & 0xffffu) / 65536.0, shift_v = (random >> 16) / 65536.0;
   // A stratum of a set is divided into as many parts as there are sets; each takes another one.
   for (std::size_t first_ray = 0; first_ray < rays.size(); first_ray += sets) {
     const std::size_t first_sun = sun;
@@ -110,8 +111,10 @@ void SunRays::sample(const V3f& point, const V3f& normal, std::size_t sets, std:
       const std::uint32_t bits = hash_of(turn, static_cast<std::uint32_t>(part));
       const double at = step * (static_cast<double>(first_ray + part) + bits / 4294967296.0);
       while (sun + 1 < suns_.size() && sums[sun + 1] <= at) ++sun;
-      Ray& ray = rays[first_ray + (part + turn) % sets];
-      const auto [u, v] = spread_pair(first_ray + part, random);
+      const std::size_t set = (part + turn) % sets;
+      Ray& ray = rays[first_ray + set];
+      const auto [u, v] = spread_pair(first_ray / sets, shift_u + double(set) / double(sets),
+                                      shift_v + double(set) * 0.6180339887498949);
       ray = point_ray(point, normal, direction_to_disk(suns_[sun].direction, u, v), 0,
                       hash_of(bits, turn));
     }

@@ -65,10 +65,10 @@ struct PointColumn {
 struct PointResult {
   /// ao, sky_view_factor and gap_N in [0,1]; bent_x, bent_y and bent_z a unit vector or zero;
   /// NAME_r, NAME_g and NAME_b of a light, and sun or sun_N, in W/m^2. With each an _error, its
-  /// standard error; bent_ and sun_N have none, and that of sun is 0 if each sun had a ray.
+  /// standard error; bent_ and sun_N have none.
   std::vector<PointColumn> columns;
   /// The bias before it was corrected, by quantity: "ao", "sky_view_factor", "gap_N", "light.NAME",
-  /// and "sun", their sum where suns were chosen; lights and suns are relative to the unoccluded
+  /// and "sun", the sum of all; lights and suns are relative to the unoccluded
   /// irradiance. The RMSE over tiles (of neighbouring points) is what the correction leaves.
   std::map<std::string, Bias> bias;
   float footprint = 0;  ///< PointOptions::footprint, or what was chosen (max_bias)

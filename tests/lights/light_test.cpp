@@ -204,6 +204,29 @@ Light mesh_light(bool double_sided = false) {
   return light;
 }
 
+// Where the point is close to an edge, the directions to the edge's ends are nearly opposite.
+TEST(Light, IrradianceBelowAnEdgeOfATriangleDoesNotDependOnItsFirstCorner) {
+  for (const float height : {1e-2f, 1e-3f, 1e-4f}) {
+    const std::vector<V3f> corners = {{-0.7f, height, 0}, {0.7f, height, 0}, {0, height, -0.7f}};
+    const double expected = polygon_irradiance(corners);
+    for (std::uint32_t first = 0; first < 3; ++first) {
+      Scene scene = point_on_ground();
+      scene.lights = {mesh_light(true)};
+      scene.lights[0].radiance = V3f(1);
+      Mesh triangle;
+      triangle.positions = corners;
+      triangle.indices = {first, (first + 1) % 3, (first + 2) % 3};
+      triangle.materials = {0};
+      place(scene, std::move(triangle), {}, 0);
+      const SceneOnDevice on(std::move(scene));
+      const auto found = irradiance(device(), on.uploaded, on.scene.lights, std::vector{V3f(0)},
+                                    std::vector{V3f(0, 1, 0)}, {4096, Estimator::exact, 1, 0});
+      EXPECT_NEAR(found[0].irradiance[0].x, expected, kSampling * expected)
+          << height << ", " << first;
+    }
+  }
+}
+
 // As lamps are built into ceilings: rays end at points that lie in the ceiling but for roundings.
 TEST(Light, IsNotHiddenByASurfaceInWhosePlaneItLies) {
   for (const float tilt : {0.0f, 0.3f}) {

@@ -323,6 +323,17 @@ TEST_F(PointFile, ArraysOfFloatsAndWholeNumbersAreRead) {
   expect_error(write("o.npy", npy("'<f8'", "(6,)", doubles)), "1 dimension;");
 }
 
+// As NumPy writes names with an apostrophe.
+TEST_F(PointFile, NamesOfFieldsMayBeInDoubleQuotes) {
+  const std::string fields = "[('x', '<f4'), ('y', '<f4'), ('z', '<f4'), (\"it's\", '<f4')]";
+  const std::string row = bytes_of_all(1.0f, 2.0f, 3.0f, 4.0f);
+  const PointList list = read_points(write("q.npy", npy(fields, "(1,)", row)));
+  EXPECT_EQ(list.points.at(0), V3f(1, 2, 3));
+  ASSERT_EQ(list.extra.size(), 1u);
+  EXPECT_EQ(list.extra[0].name, "it_s");
+  EXPECT_EQ(list.extra[0].values.at(0), 4);
+}
+
 TEST_F(PointFile, FieldsOfStructuredArraysHaveTheirOwnTypes) {
   const std::string row = bytes_of_all(std::int64_t{-(1ll << 40)}, 1.0f, std::uint8_t{255}, 2.0,
                                        std::int32_t{-3}, std::uint32_t{4'000'000'000}) +

@@ -6,8 +6,10 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <set>
 
 #include "dapple/points.hpp"
+#include "points/point_sets.hpp"
 #include "points/sun_rays.hpp"
 #include "support/scenes/scene_on_device.hpp"
 
@@ -192,6 +194,52 @@ TEST(SunSampling, TheSameSeedGivesTheSameBitsAndAnotherOthers) {
   EXPECT_NE(column(under_tree(options), "sun").values, first);
   options.per_sun = true;
   EXPECT_EQ(under_tree(options).columns.size(), 100u) << "each sun has its ray";
+}
+
+// An edge 1 m above hides a part of the sun's disk, of radius r = tan(0.2665 degrees): of the disk
+// (acos(t) - t sqrt(1 - t^2)) / pi is seen where t r is the distance into the shadow.
+TEST(SunSampling, StandardErrorsInPenumbrasAreThoseOfTheValues) {
+  scene_test::Points random(4);
+  Scene scene;
+  scene.materials.push_back(scene_test::material_of(1));
+  Mesh half_plane;
+  scene_test::append_grid(half_plane, {-50, 1, 50}, {50, 0, 0}, {0, 0, -100}, 4, 0);
+  scene_test::place(scene, std::move(half_plane));
+  const double radius = std::tan(0.2665 * std::numbers::pi / 180);
+  std::vector<V3f> points;
+  std::vector<double> expected;
+  for (int i = 0; i < 500; ++i) {
+    const double t = 1.8 * random.unit() - 0.9;
+    points.emplace_back(static_cast<float>(-t * radius), 0.0f, 4 * random.unit());
+    expected.push_back(200 * (std::acos(t) - t * std::sqrt(1 - t * t)) / std::numbers::pi);
+  }
+  PointOptions options;
+  options.ao = options.sky_view_factor = false;
+  options.rays = 256;
+  options.estimator = Estimator::exact;
+  options.suns = {{kUp, 200}};
+  const PointResult found =
+      measure_points(scene, points, std::vector<V3f>(points.size(), kUp), options);
+  ASSERT_EQ(found.columns.size(), 2u);
+  double squares = 0, told = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    squares += std::pow(found.columns[0].values[i] - expected[i], 2);
+    told += std::pow(found.columns[1].values[i], 2);
+  }
+  const double ratio = std::sqrt(told / squares);
+  EXPECT_GT(ratio, 0.8);
+  EXPECT_LT(ratio, 1.8) << "told " << std::sqrt(told / 500) << ", is " << std::sqrt(squares / 500);
+}
+
+// Whose product with the number of sets would not fit 32 bits.
+TEST(SunSampling, LargeSeedsAreOtherSeeds) {
+  std::set<std::uint32_t> seeds;
+  PointOptions options;
+  for (const std::uint32_t seed : {0u, 1u, 1u << 29, 1u << 30, (1u << 29) + 1, 0xffffffffu}) {
+    options.seed = seed;
+    for (int set = 0; set < kPointSets; ++set) seeds.insert(rays_of_set(options, set).seed);
+  }
+  EXPECT_EQ(seeds.size(), 6u * kPointSets);
 }
 
 }  // namespace

@@ -64,10 +64,16 @@ float offset_above_plane(const V3f& reach, const V3f& normal) {
 
 SurfacePoint query_point(const QueryPoints& points, std::uint32_t i, const SceneParams& scene) {
   const bool is_smooth = !points.geometric.empty() && points.geometric[i].length2() > 0;
-  return surface_point(points.positions[i], points.normals[i],
-                       is_smooth ? points.geometric[i] : points.normals[i],
-                       points.reaches.empty() ? V3f(0, 0, 0) : points.reaches[i], i,
-                       points.has_planes && scene.has_top == 0);
+  const V3f& plane = !points.surfaces.empty() ? points.surfaces[i]
+                     : is_smooth              ? points.geometric[i]
+                                              : points.normals[i];
+  SurfacePoint point = surface_point(points.positions[i], points.normals[i], plane,
+                                     points.reaches.empty() ? V3f(0, 0, 0) : points.reaches[i], i,
+                                     points.has_planes && scene.has_top == 0);
+  if (points.surfaces.empty()) return point;
+  for (int axis = 0; axis < 3; ++axis) point.position[axis] += point.offset * plane[axis];
+  point.offset = 0;
+  return point;
 }
 
 bool moves_outward(const V3f& geometric, const V3f& shift, const SurfacePoint& point) {

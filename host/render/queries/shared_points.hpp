@@ -39,6 +39,9 @@ struct QueryPoints {
   bool has_planes = false;
   /// The largest terms of the sums that were rounded to `positions`, not negative; or empty.
   std::span<const V3f> reaches = {};
+  /// Unit normals of the surfaces that points lie on, off which rays start; empty: `normals`.
+  /// Directions below these surfaces are not hidden.
+  std::span<const V3f> surfaces = {};
 };
 
 /// Point `i`, not moved to its smooth surface; its rays start `offset` above it.
