@@ -14,37 +14,31 @@ std::string object_name(const Scene& scene, std::int64_t object) {
   return object < 0 ? std::string() : scene.objects[static_cast<std::size_t>(object)];
 }
 
-/// Parts of a scene with the names of their objects.
-struct NamedPart {
-  MatchedPart part;
-  std::string object;  ///< empty: a mesh that is placed as a whole, or primitives without one
-};
+using Runs = std::vector<MatchedPart>;
 
-void add_runs(const Scene& scene, std::uint32_t m, std::vector<NamedPart>& parts) {
+/// Runs of primitives of one object each, by its name; "" are those without one.
+void add_runs(const Scene& scene, std::uint32_t m, std::map<std::string, Runs>& runs) {
   const std::vector<std::uint32_t>& objects = scene.meshes[m].objects;
   for (std::uint32_t first = 0, end = 0; first < objects.size(); first = end) {
     while (end < objects.size() && objects[end] == objects[first]) ++end;
-    parts.push_back({{m, first, end - first}, object_name(scene, objects[first])});
+    runs[object_name(scene, objects[first])].push_back({m, first, end - first});
   }
   const auto named = static_cast<std::uint32_t>(objects.size());
   const auto all = static_cast<std::uint32_t>(scene.meshes[m].primitive_count());
-  if (named < all) parts.push_back({{m, named, all - named}, ""});
+  if (named < all) runs[""].push_back({m, named, all - named});
+}
+
+/// Of meshes whose primitives have objects of their own.
+std::map<std::string, Runs> runs_of(const Scene& scene) {
+  std::map<std::string, Runs> runs;
+  for (std::uint32_t m = 0; m < scene.meshes.size(); ++m)
+    if (!scene.meshes[m].objects.empty()) add_runs(scene, m, runs);
+  return runs;
 }
 
 /// All primitives of a mesh that is placed as a whole.
 MatchedPart whole_mesh(const Scene& scene, std::uint32_t m) {
   return {m, 0, static_cast<std::uint32_t>(scene.meshes[m].primitive_count())};
-}
-
-std::vector<NamedPart> parts_of(const Scene& scene) {
-  std::vector<NamedPart> parts;
-  for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) {
-    if (scene.meshes[m].objects.empty())
-      parts.push_back({whole_mesh(scene, m), ""});
-    else
-      add_runs(scene, m, parts);
-  }
-  return parts;
 }
 
 /// For each mesh of `now` that is placed as a whole, that of `next` which the first placement that
@@ -92,6 +86,36 @@ void match(const Scene& now, const Scene& next, const MatchedPart& to, MatchedPa
   part.is_there = true;
 }
 
+std::uint64_t count_of(const Runs& runs) {
+  std::uint64_t count = 0;
+  for (const MatchedPart& run : runs) count += run.count;
+  return count;
+}
+
+/// Appends the runs of an object and their counterparts, in order. Where something between two runs
+/// is not in the other frame, these are one run there: both are cut at the ends of both.
+void match_runs(const Scene& now, const Scene& next, const Runs& runs, const Runs& next_runs,
+                Runs& parts) {
+  if (count_of(runs) != count_of(next_runs)) {
+    parts.insert(parts.end(), runs.begin(), runs.end());
+    return;
+  }
+  auto to = next_runs.begin();
+  std::uint32_t taken = 0;  // of *to
+  for (MatchedPart run : runs) {
+    while (run.count > 0) {
+      const std::uint32_t count = std::min(run.count, to->count - taken);
+      MatchedPart part{run.mesh, run.first, count};
+      match(now, next, {to->mesh, to->first + taken, count}, part);
+      parts.push_back(part);
+      run.first += count;
+      run.count -= count;
+      taken += count;
+      if (taken == to->count) ++to, taken = 0;
+    }
+  }
+}
+
 }  // namespace
 
 FrameMatch::FrameMatch(const Scene& now, const Scene& next) : instances(now.instances.size(), -1) {
@@ -100,25 +124,21 @@ FrameMatch::FrameMatch(const Scene& now, const Scene& next) : instances(now.inst
       [&](std::size_t i) { return object_name(now, now.instances[i].object); },
       [&](std::size_t i) { return object_name(next, next.instances[i].object); },
       [&](std::size_t i, std::size_t k) { instances[i] = static_cast<int>(k); });
-  std::vector<NamedPart> of_now = parts_of(now);
-  const std::vector<NamedPart> of_next = parts_of(next);
-  const auto key = [](const Scene& scene, const NamedPart& part) {
-    return std::pair(part.object, scene.meshes[part.part.mesh].objects.empty());
-  };
-  pair_by_key(
-      of_now.size(), of_next.size(), [&](std::size_t i) { return key(now, of_now[i]); },
-      [&](std::size_t i) { return key(next, of_next[i]); },
-      [&](std::size_t i, std::size_t k) {
-        if (!now.meshes[of_now[i].part.mesh].objects.empty())
-          match(now, next, of_next[k].part, of_now[i].part);
-      });
-  const std::vector<std::int64_t> meshes = meshes_of_placements(now, next, instances);
-  for (NamedPart& named : of_now) {
-    const std::uint32_t mesh = named.part.mesh;
-    if (now.meshes[mesh].objects.empty() && meshes[mesh] >= 0)
-      match(now, next, whole_mesh(next, static_cast<std::uint32_t>(meshes[mesh])), named.part);
-    parts.push_back(named.part);
+  const std::map<std::string, Runs> next_runs = runs_of(next);
+  for (const auto& [object, runs] : runs_of(now)) {
+    const auto found = next_runs.find(object);
+    match_runs(now, next, runs, found == next_runs.end() ? Runs() : found->second, parts);
   }
+  const std::vector<std::int64_t> meshes = meshes_of_placements(now, next, instances);
+  for (std::uint32_t m = 0; m < meshes.size(); ++m) {
+    if (!now.meshes[m].objects.empty()) continue;
+    parts.push_back(whole_mesh(now, m));
+    if (meshes[m] >= 0)
+      match(now, next, whole_mesh(next, static_cast<std::uint32_t>(meshes[m])), parts.back());
+  }
+  std::sort(parts.begin(), parts.end(), [](const MatchedPart& a, const MatchedPart& b) {
+    return std::pair(a.mesh, a.first) < std::pair(b.mesh, b.first);
+  });
 }
 
 }  // namespace dapple

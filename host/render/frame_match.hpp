@@ -9,7 +9,7 @@
 
 namespace dapple {
 
-/// Primitives of an object that follow each other in a mesh.
+/// Primitives of an object that follow each other in a mesh, in both frames.
 struct MatchedPart {
   std::uint32_t mesh = 0, first = 0, count = 0;
   /// Whether the next frame has the same primitives; else what follows has no meaning.

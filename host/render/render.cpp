@@ -340,6 +340,7 @@ RenderResult Renderer::render_shutter(const std::function<Scene(int)>& scene_at,
   RenderStatistics& statistics = result.statistics;
   statistics.estimator = name_of(options.estimator);
 
+  if (options.spp % times != 0) statistics.notes.push_back(uneven_moments_note(options.spp, times));
   const View view = prepare_scene(scene, options, statistics.notes);
   options.camera_splitting = choose_camera_splitting(options, scene, view);
   const Settings asked = option_settings(options, view);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "dapple/render.hpp"
@@ -20,6 +21,9 @@ struct Shutter {
 /// Throws Error usage for options that do not go with a shutter or with motion vectors.
 void check_shutter(const Shutter& shutter, const RenderOptions& options,
                    const RenderControl& control);
+
+/// Says that `spp` samples are not as many for each of `times` moments.
+std::string uneven_moments_note(int spp, int times);
 
 /// What holds for the scenes at all moments together.
 struct ShutterScenes {

@@ -238,6 +238,23 @@ void put_out_strands(Scene& scene) {
   }
 }
 
+/// A frame in which everything is scaled to nothing is empty, and no error. A BVH needs a triangle:
+/// this one is too small for a ray to hit.
+void add_speck(Scene& scene) {
+  constexpr float kSize = 1e-12f;
+  Mesh speck;
+  speck.name = "speck";
+  speck.positions = {V3f(0, 0, 0), V3f(kSize, 0, 0), V3f(0, kSize, 0)};
+  speck.indices = {0, 1, 2};
+  speck.materials = {0};
+  if (scene.materials.empty()) scene.materials.emplace_back();
+  Instance instance;
+  instance.mesh = static_cast<std::uint32_t>(scene.meshes.size());
+  scene.meshes.push_back(std::move(speck));
+  scene.instances.push_back(instance);
+  scene.warnings.emplace_back("nothing is left in this frame");
+}
+
 /// Lists what was dropped, for the error that nothing is left.
 std::string reasons(const Scene& scene) {
   std::string text;
@@ -261,6 +278,7 @@ void merge_single_instances(Scene& scene) {
   merge_chosen(scene, merged);
   drop_unhittable_triangles(scene);
   drop_unused(scene);
+  if (moves && scene.instances.empty()) add_speck(scene);
   if (scene.instances.empty()) {
     throw Error(ErrorKind::input,
                 fmt::format("{}: there is nothing to render: no triangle or strand is left{}",

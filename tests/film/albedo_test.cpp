@@ -153,6 +153,29 @@ TEST(Albedo, AMagnifiedTextureIsADirectLookUp) {
   }
 }
 
+// Of coordinates from 1 to 2 a clamped texture shows its last texels, whatever the alphas repeat.
+TEST(Albedo, AColourTextureWrapsByItsOwnModes) {
+  Scene scene = square();
+  for (V2f& uv : scene.meshes[0].uvs) uv.x += 1;
+  scene.color_textures.resize(1);
+  scene.color_textures[0].width = 2;
+  scene.color_textures[0].height = 1;
+  scene.color_textures[0].rgb = {255, 0, 0, 0, 255, 0};
+  scene.color_textures[0].wrap_s = Wrap::clamp;
+  scene.textures.resize(1);
+  scene.textures[0].width = 2;
+  scene.textures[0].height = 1;
+  scene.textures[0].alpha = {200, 250};
+  scene.materials[0].color_texture = scene.materials[0].alpha_texture = 0;
+  scene.materials[0].alpha_mode = AlphaMode::blend;
+  const Film film = render(scene, picture(16, 1)).film;
+  for (std::size_t p = 0; p < 256; ++p) {
+    if (at(film, "A", p) == 0) continue;  // the ray slipped through
+    EXPECT_NEAR(at(film, "albedo.R", p), 0, 1e-3) << p;
+    EXPECT_NEAR(at(film, "albedo.G", p), 1, 1e-3) << p;
+  }
+}
+
 TEST(Albedo, APixelOfManyTexelsIsTheirMean) {
   Scene scene = square();
   ColorTexture texture = random_texture(512);

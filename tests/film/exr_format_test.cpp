@@ -16,6 +16,7 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
 
 #include "film/exr/exr_parts.hpp"
 #include "support/files/film_files.hpp"
@@ -173,6 +174,20 @@ TEST_F(ExrFormatTest, DwaaIsForColoursOnly) {
       square += std::pow(double{read[p]} - plane.pixels[p], 2);
     const double rmse = std::sqrt(square / static_cast<double>(read.size()));
     EXPECT_LE(rmse, is_color ? 0.02 : 0.0) << plane.channel;
+  }
+}
+
+// DWAA codes colours as 16-bit floats, with errors: beside bright edges some would pass 65504.
+TEST_F(ExrFormatTest, DwaaOfBrightColoursStaysFinite) {
+  Film film = ramp_film(64, 64);
+  std::mt19937 bits(5);
+  for (Plane& plane : film.planes)
+    for (float& value : plane.pixels)
+      if (plane.channel != "A") value = bits() % 3 == 0 ? 1e6f : static_cast<float>(bits() % 65504);
+  for (const std::vector<std::string>& half : {std::vector<std::string>{}, {"all"}}) {
+    const Film back = through_file(film, path("a.exr"), {ExrCompression::dwaa, true, half});
+    for (const Plane& plane : back.planes)
+      for (const float value : plane.pixels) ASSERT_TRUE(std::isfinite(value)) << plane.channel;
   }
 }
 

@@ -209,6 +209,31 @@ TEST(Motion, WhatStaysMovesThoughOthersComeOrGo) {
   }
 }
 
+// Leaves of one name before and after a stem: without it they follow each other in the merged mesh.
+TEST(Motion, ObjectsOfOneNameMoveThoughWhatIsBetweenThemGoes) {
+  const auto leaves = [](const V3f& at, bool with_stem) {
+    Scene scene = scene_of({.square = at});
+    scene.node_names = {"leaf", "stem", "leaf"};
+    const Instance square = scene.instances[0], behind = scene.instances[1];
+    scene.instances.clear();
+    scene.meshes.resize(1, scene.meshes[0]);
+    for (int node = 0; node < 3; ++node) {
+      if (node == 1 && !with_stem) continue;
+      Instance instance = node == 0 ? square : behind;
+      instance.node = node;
+      instance.mesh = static_cast<std::uint32_t>(scene.meshes.size() - 1);
+      scene.instances.push_back(instance);
+      scene.meshes.push_back(scene.meshes[0]);
+    }
+    scene.meshes.pop_back();
+    return scene;
+  };
+  for (const bool now : {false, true})
+    for (const bool then : {false, true})
+      expect_motion(picture_of(leaves({0, 0, 0}, now), leaves({0.3f, -0.2f, 0}, then)),
+                    [](double, double) { return Imath::V2d(0.3, -0.2) * kPixels; });
+}
+
 // The placement that goes or comes is the first, which names objects that are placed once.
 TEST(Motion, PlacementsMoveThoughOthersOfTheirMeshComeOrGo) {
   const auto scene_with = [](const V3f& at, bool with_others) {

@@ -59,6 +59,35 @@ Scene sphere_and_strand(bool has_sphere) {
   return scene;
 }
 
+/// A sphere that an animation has scaled to nothing, or not.
+Scene moving_sphere(bool is_there) {
+  Scene scene = sphere();
+  scene.animations.emplace_back();
+  if (!is_there) scene.instances[0].to_world = nothing();
+  return scene;
+}
+
+TEST(VisibilityChanges, AFrameInWhichNothingIsLeftIsEmpty) {
+  RenderOptions options = small_picture();
+  options.motion = true;
+  const auto next = [](int) { return moving_sphere(true); };
+  const RenderResult empty =
+      Renderer().render_shutter([](int) { return moving_sphere(false); }, 1, options, {}, next);
+  for (const float a : empty.film.find("A")->pixels) EXPECT_EQ(a, 0);
+  const auto& notes = empty.statistics.notes;
+  EXPECT_NE(std::find(notes.begin(), notes.end(), "nothing is left in this frame"), notes.end());
+  Scene still = moving_sphere(false);
+  still.animations.clear();
+  EXPECT_THROW(render(std::move(still), small_picture()), Error);
+}
+
+TEST(VisibilityChanges, AMomentInWhichNothingIsLeftAddsNothing) {
+  RenderOptions options = small_picture();
+  const auto scene_at = [](int k) { return moving_sphere(k == 1); };
+  const Film half = Renderer().render_shutter(scene_at, 2, options).film;
+  EXPECT_NEAR(mean(half, "A"), 0.5 * mean(render(moving_sphere(true), options).film, "A"), 0.01);
+}
+
 TEST(VisibilityChanges, ASmoothMeshMayAppearWhereThereWereOnlyStrands) {
   RenderOptions options = small_picture();
   options.light = false;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numbers>
 #include <utility>
 
 #include "camera/view.hpp"
@@ -20,6 +21,17 @@ Light read_dome(const RenderArguments& a) {
   Light dome = dome_light("dome", a.dome);
   dome.rotation = dome_rotation("--dome-rotation", a.dome_rotation);
   return dome;
+}
+
+/// The options that choose a camera again that was added to a scene.
+std::string camera_options(const Camera& camera) {
+  const V3f from = camera.to_world.translation();
+  V3f forward;
+  camera.to_world.multDirMatrix(V3f(0, 0, -1), forward);
+  const V3f at = from + forward;
+  return fmt::format("--look-from {:.6g},{:.6g},{:.6g} --look-at {:.6g},{:.6g},{:.6g} --fov {:.6g}",
+                     from.x, from.y, from.z, at.x, at.y, at.z,
+                     camera.fov_y * 180 / std::numbers::pi_v<float>);
 }
 
 /// Colours are read only where they are shown.
@@ -64,7 +76,13 @@ Scene Shot::frame(std::optional<double> seconds) {
 Shot::Defaults Shot::choose_defaults(const Scene& first) const {
   Defaults chosen;
   const Camera camera = choose_view(first, options_, chosen.notes).camera;
-  if (!options_.look && first.cameras.empty()) chosen.camera = camera;
+  if (!options_.look && first.cameras.empty()) {
+    chosen.camera = camera;
+    if (!arguments_.frames.empty())
+      chosen.notes.push_back(
+          "all frames have the first one's camera; a later sequence has it with " +
+          camera_options(camera));
+  }
   if (!options_.look) chosen.camera_name = camera.name;
   chosen.focus_distance = camera.focus_distance;
   if (options_.light && first.lights.empty()) chosen.lights = daylight(camera);

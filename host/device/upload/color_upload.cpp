@@ -98,6 +98,11 @@ void pack_materials(const Scene& scene, SurfaceColors& colors) {
   }
 }
 
+/// Whether coordinates of one, without the whole tiles that it repeats, are those of the other.
+bool wrap_alike(const Texture& alpha, const ColorTexture& color) {
+  return alpha.wrap_s == color.wrap_s && alpha.wrap_t == color.wrap_t;
+}
+
 /// The entries of a mesh's surfaces.
 class MeshEntries {
  public:
@@ -118,7 +123,9 @@ class MeshEntries {
     if (!mesh_.colors.empty()) flags |= DAPPLE_COLOR_CORNERS;
     if (material.color_texture < 0 || mesh_.uvs.empty() || mesh_.has_strands()) return flags;
     const TriangleBlock& block = bvh_.blocks[first_block_ + lane / 8];
-    const bool of_opacity = material.alpha_texture >= 0 && block.opacity[lane % 8] < 0;
+    const bool of_opacity = material.alpha_texture >= 0 && block.opacity[lane % 8] < 0 &&
+                            wrap_alike(scene_.textures[material.alpha_texture],
+                                       scene_.color_textures[material.color_texture]);
     return flags | (of_opacity ? DAPPLE_COLOR_OPACITY_UVS : DAPPLE_COLOR_UVS);
   }
 

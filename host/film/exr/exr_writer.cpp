@@ -81,10 +81,12 @@ std::vector<Imf::Header> headers_of(const Film& film, const std::vector<ExrPart>
   return headers;
 }
 
-/// The nearest 16-bit float. Finite values beyond its range become the largest one.
-half half_of(float value) {
-  constexpr float kLargest = 65504;
-  return half(std::isfinite(value) ? std::clamp(value, -kLargest, kLargest) : value);
+/// The largest 16-bit float. DWAA codes colours as such, with errors that would pass it.
+constexpr float kLargestHalf = 65504, kLargestOfDwaa = 60000;
+
+/// Finite values beyond the largest one become it.
+float limited(float value, float largest) {
+  return std::isfinite(value) ? std::clamp(value, -largest, largest) : value;
 }
 
 /// Writes one part. `Out` is OpenEXR's OutputFile or OutputPart.
@@ -93,13 +95,22 @@ void write_part(Out& out, const ExrPart& part, const PixelRect& data_window) {
   Imf::FrameBuffer buffer;
   const Box2i window = exr_window(data_window);
   std::vector<std::vector<half>> halves;
+  std::vector<std::vector<float>> floats;
+  const bool lossy = part.compression == ExrCompression::dwaa;
+  const float largest = lossy ? kLargestOfDwaa : kLargestHalf;
+  const auto limit = [&](float value) { return limited(value, largest); };
   for (std::size_t i = 0; i < part.planes.size(); ++i) {
     const Plane& plane = *part.planes[i];
     const void* values = plane.pixels.data();
     if (part.half[i]) {
       halves.emplace_back(plane.pixels.size());
-      std::transform(plane.pixels.begin(), plane.pixels.end(), halves.back().begin(), half_of);
+      std::transform(plane.pixels.begin(), plane.pixels.end(), halves.back().begin(),
+                     [&](float value) { return half(limit(value)); });
       values = halves.back().data();
+    } else if (lossy) {
+      floats.emplace_back(plane.pixels.size());
+      std::transform(plane.pixels.begin(), plane.pixels.end(), floats.back().begin(), limit);
+      values = floats.back().data();
     }
     buffer.insert(plane.channel,
                   Imf::Slice::Make(part.half[i] ? Imf::HALF : Imf::FLOAT, values, window));
