@@ -1,6 +1,7 @@
 #include "bake/mesh_borders.hpp"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "bake/vertex_groups.hpp"
@@ -12,18 +13,20 @@ namespace {
 
 using Imath::V3d;
 
-/// Meshes with values that are placed once, as one mesh in the world.
+/// Meshes with values, as one mesh in the world: what is placed once, or parts of a mesh.
 struct JoinedMeshes {
   Mesh mesh;                                      ///< positions and indices alone
   std::vector<bool> two_sided;                    ///< by triangle
   std::vector<std::uint32_t> mesh_of, vertex_of;  ///< by vertex: in the scene
   std::vector<M44f> to_world;                     ///< by mesh of the scene
   std::size_t count = 0;                          ///< of meshes
+
+  explicit JoinedMeshes(std::size_t meshes) : to_world(meshes) {}
 };
 
 void append(const Mesh& mesh, std::uint32_t index, const std::vector<bool>& two_sided,
-            JoinedMeshes& joined) {
-  const M44f& to_world = joined.to_world[index];
+            const M44f& to_world, JoinedMeshes& joined) {
+  joined.to_world[index] = to_world;
   const auto first = static_cast<std::uint32_t>(joined.mesh.positions.size());
   for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
     joined.mesh.positions.push_back(mesh.positions[v] * to_world);
@@ -41,20 +44,34 @@ void append(const Mesh& mesh, std::uint32_t index, const std::vector<bool>& two_
   ++joined.count;
 }
 
-JoinedMeshes meshes_placed_once(const Scene& scene, const TwoSided& two_sided,
-                                const BakeResult& result) {
-  JoinedMeshes joined;
-  joined.to_world.resize(scene.meshes.size());
-  std::vector<std::size_t> placed(scene.meshes.size());
-  for (const Instance& instance : scene.instances) {
-    if (!is_invertible(instance.to_world)) continue;
-    joined.to_world[instance.mesh] = instance.to_world;
-    ++placed[instance.mesh];
+/// By mesh with values, where it is placed; empty for others.
+std::vector<std::vector<M44f>> placements_of(const Scene& scene, const BakeResult& result) {
+  std::vector<std::vector<M44f>> placements(scene.meshes.size());
+  for (const Instance& instance : scene.instances)
+    if (is_invertible(instance.to_world) && !result.meshes[instance.mesh].ao.empty())
+      placements[instance.mesh].push_back(instance.to_world);
+  return placements;
+}
+
+/// Meshes that are placed once; and parts of one mesh of the file, which its mesh lights divide,
+/// that are placed several times, all alike. Each element is joined by itself.
+std::vector<std::vector<std::uint32_t>> joined_sets(
+    const Scene& scene, const std::vector<std::vector<M44f>>& placements) {
+  std::vector<std::vector<std::uint32_t>> sets(1);
+  std::map<std::uint32_t, std::vector<std::vector<std::uint32_t>>> parts;  // by mesh of the file
+  for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) {
+    if (placements[m].size() == 1) sets[0].push_back(m);
+    if (placements[m].size() < 2 || scene.meshes[m].sources.empty()) continue;
+    auto& of_file = parts[scene.meshes[m].sources.front().mesh];
+    const auto alike = std::find_if(of_file.begin(), of_file.end(), [&](const auto& set) {
+      return placements[set.front()] == placements[m];
+    });
+    (alike == of_file.end() ? of_file.emplace_back() : *alike).push_back(m);
   }
-  for (std::uint32_t m = 0; m < scene.meshes.size(); ++m)
-    if (placed[m] == 1 && !result.meshes[m].ao.empty())
-      append(scene.meshes[m], m, two_sided.triangles(scene.meshes[m]), joined);
-  return joined;
+  for (auto& [mesh, of_file] : parts)
+    for (auto& set : of_file)
+      if (set.size() > 1) sets.push_back(std::move(set));
+  return sets;
 }
 
 /// Which vertices lie where another mesh has one, too.
@@ -134,11 +151,7 @@ class GroupMean {
   std::vector<V3f> light_;
 };
 
-}  // namespace
-
-void join_borders(const Scene& scene, const TwoSided& two_sided, BakeResult& result) {
-  const JoinedMeshes joined = meshes_placed_once(scene, two_sided, result);
-  if (joined.count < 2) return;
+void join(const JoinedMeshes& joined, BakeResult& result) {
   const std::vector<std::uint32_t> welded =
       welded_vertices(joined.mesh.positions, joined.mesh.indices);
   const std::vector<bool> shared = shared_vertices(joined, welded);
@@ -156,6 +169,19 @@ void join_borders(const Scene& scene, const TwoSided& two_sided, BakeResult& res
   for (const auto& [vertex, group] : members) {
     const std::uint32_t mesh = joined.mesh_of[vertex];
     means[group].store(joined.vertex_of[vertex], result.meshes[mesh], joined.to_world[mesh]);
+  }
+}
+
+}  // namespace
+
+void join_borders(const Scene& scene, const TwoSided& two_sided, BakeResult& result) {
+  const std::vector<std::vector<M44f>> placements = placements_of(scene, result);
+  for (const std::vector<std::uint32_t>& set : joined_sets(scene, placements)) {
+    JoinedMeshes joined(scene.meshes.size());
+    for (const std::uint32_t m : set)
+      append(scene.meshes[m], m, two_sided.triangles(scene.meshes[m]), placements[m].front(),
+             joined);
+    if (joined.count > 1) join(joined, result);
   }
 }
 

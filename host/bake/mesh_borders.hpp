@@ -9,7 +9,8 @@ namespace dapple {
 
 /// Where vertices of several meshes, each placed once, lie at one place of the world
 /// (welded_vertices()) with similar normals (group_vertices()), all get the mean over the meshes.
-/// Meshes without values are left out. Linear in the vertices but for a sort of shared ones.
+/// Meshes without values are left out. So do parts of a mesh of the file, which its mesh lights
+/// divide, where all are placed alike. Linear in the vertices but for a sort of shared ones.
 void join_borders(const Scene& scene, const TwoSided& two_sided, BakeResult& result);
 
 }  // namespace dapple

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "bvh/opacity/disjoint_sets.hpp"
 #include "bvh/opacity/welded_vertices.hpp"
+#include "scene/disjoint_sets.hpp"
 
 namespace dapple {
 namespace {

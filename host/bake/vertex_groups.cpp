@@ -9,7 +9,7 @@
 #include <cmath>
 #include <compare>
 
-#include "bvh/opacity/disjoint_sets.hpp"
+#include "scene/disjoint_sets.hpp"
 
 namespace dapple {
 namespace {

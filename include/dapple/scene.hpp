@@ -74,6 +74,7 @@ struct VertexSource {
   std::uint32_t mesh = 0, primitive = 0;  ///< indices in the file
   std::uint32_t first = 0, count = 0;     ///< vertices of the Mesh
   std::vector<std::uint32_t> used;        ///< their elements in accessors; empty: 0 to count - 1
+  bool mirrored = false;  ///< skinned, and mirrored along X, which the instance's matrix undoes
 };
 
 /// Indexed primitives in object space: only triangles, or only segments of strands. The materials

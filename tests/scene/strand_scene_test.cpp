@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 
 #include "dapple/error.hpp"
 #include "support/scenes/curly_strands.hpp"
@@ -40,6 +41,25 @@ TEST(StrandScene, StrandsThatAPlacementWouldFlattenStayInstances) {
   merge_single_instances(scene);
   EXPECT_EQ(scene.instances[0].to_world[1][1], 2.0f);
   EXPECT_EQ(scene.meshes[0].radii[0], 0.002f);
+}
+
+// Two segments without length in a row, in either order.
+TEST(StrandScene, SegmentsWithoutLengthLeaveNoGap) {
+  for (const bool backwards : {false, true}) {
+    Mesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {1, 0, 0}, {2, 0, 0}};
+    mesh.radii.assign(5, 0.01f);
+    mesh.materials.assign(4, 0);
+    for (const std::uint32_t s : {0u, 1u, 2u, 3u}) {
+      const std::uint32_t first = backwards ? 3 - s : s;
+      mesh.indices.insert(mesh.indices.end(), {first, first + 1});
+    }
+    Scene scene = strand_scene(std::move(mesh), 1);
+    merge_single_instances(scene);
+    const std::vector<std::uint32_t>& kept = scene.meshes.at(0).indices;
+    ASSERT_EQ(kept.size(), 4u);
+    EXPECT_EQ(std::set<std::uint32_t>(kept.begin(), kept.end()).size(), 3u) << backwards;
+  }
 }
 
 TEST(StrandScene, RadiiScaleWithASingleInstance) {

@@ -10,7 +10,7 @@
 #include "bake/samples/surface_samples.hpp"
 #include "bake/vertex_groups.hpp"
 #include "bvh/opacity/closed_surface.hpp"
-#include "bvh/opacity/disjoint_sets.hpp"
+#include "scene/disjoint_sets.hpp"
 #include "bvh/opacity/triangle_opacity.hpp"
 
 namespace dapple {

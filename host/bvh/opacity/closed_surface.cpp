@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "bvh/opacity/disjoint_sets.hpp"
+#include "scene/disjoint_sets.hpp"
 
 namespace dapple {
 namespace {

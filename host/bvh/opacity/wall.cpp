@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "bvh/opacity/disjoint_sets.hpp"
+#include "scene/disjoint_sets.hpp"
 
 namespace dapple {
 namespace {

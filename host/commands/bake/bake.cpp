@@ -76,9 +76,12 @@ std::vector<OutputPath> side_outputs(const gltf::SourceFile& file, const BakeArg
   std::vector<OutputPath> sides;
   const gltf::Editor editor(file, a.output);
   check_side_copies(a.output, editor.side_copies());
-  for (const std::string& path : editor.side_files_written()) sides.push_back({"--output", path});
+  std::vector<std::string> new_files = editor.new_side_files();
   if (options.texture && a.output.ends_with(".gltf"))
-    sides.push_back({"--output", editor.image_path(gltf::kOcclusionSuffix)});
+    new_files.push_back(editor.image_path(gltf::kOcclusionSuffix));
+  check_new_sides(a.output, new_files);
+  for (const std::string& path : new_files) sides.push_back({"--output", path});
+  for (const auto& [from, to] : editor.side_copies()) sides.push_back({"--output", to});
   return sides;
 }
 
@@ -127,7 +130,8 @@ std::string earlier_lights_note(const gltf::SourceFile& file, const Scene& scene
 std::vector<std::string> add_to_vertices(gltf::Editor& editor, const gltf::SourceFile& file,
                                          const Scene& scene, const BakeArguments& a,
                                          const BakeResult& result) {
-  const BakeTargets targets{channel_of(a), a.blend == "multiply", a.bent_channel};
+  const BakeTargets targets{channel_of(a), a.blend == "multiply", a.bent_channel,
+                            a.options.placement};
   gltf::add_attributes(editor, baked_attributes(file, scene, result, targets));
   std::vector<std::string> notes;
   if (multiplies_colors(file, scene, result, targets))
@@ -230,6 +234,7 @@ RenderControl to_control(const BakeArguments& a, ProgressBar& progress) {
     control.stop = save_when_interrupted();
     control.progress = end_early(a.checkpoint, a.resume, control.progress);
   }
+  control.warn = warn_of_checkpoint;
   control.checkpoint = a.checkpoint;
   control.checkpoint_every = parse_seconds("--checkpoint-every", a.checkpoint_every);
   control.resume = a.resume;

@@ -7,6 +7,7 @@
 #include <map>
 #include <utility>
 
+#include "bake/mesh_placements.hpp"
 #include "bake/samples/surface_samples.hpp"
 #include "commands/bake/file_values.hpp"
 #include "dapple/error.hpp"
@@ -65,15 +66,11 @@ BakedMesh as_normals(const Mesh& mesh, BakedMesh baked, const Imath::M33f& metri
   return baked;
 }
 
-/// Meshes of the scene whose skinned vertices are mirrored along x, and whose node mirrors them
-/// back, so that their fronts are those that glTF says.
-std::vector<bool> mirrored_skins(const SourceFile& file, const Scene& scene) {
-  std::vector<bool> mirrored(scene.meshes.size());
-  for (const Instance& instance : scene.instances)
-    if (instance.node >= 0 && Imath::M44d(instance.to_world).determinant() < 0 &&
-        file.has_skin(static_cast<std::uint32_t>(instance.node)))
-      mirrored[instance.mesh] = true;
-  return mirrored;
+/// Whether a mesh's skinned vertices are mirrored along x, and its node mirrors them back, so that
+/// their fronts are those that glTF says.
+bool is_mirrored(const Mesh& mesh) {
+  return std::any_of(mesh.sources.begin(), mesh.sources.end(),
+                     [](const VertexSource& source) { return source.mirrored; });
 }
 
 NewAttribute color_attribute(gltf::PrimitiveColors colors, const VertexValues& baked,
@@ -203,16 +200,17 @@ std::vector<NewAttribute> baked_attributes(const SourceFile& file, const Scene& 
                                            const BakeResult& result, const BakeTargets& targets) {
   const BakeChannel& channel = targets.channel;
   const bool to_normal = targets.bent_channel == "NORMAL";
-  const std::vector<bool> mirrored = mirrored_skins(file, scene);
-  const bool any_mirrored = std::find(mirrored.begin(), mirrored.end(), true) != mirrored.end();
+  const bool any_mirrored = std::any_of(scene.meshes.begin(), scene.meshes.end(), is_mirrored);
   std::vector<BakedMesh> turned;
   for (std::size_t m = 0; (to_normal || any_mirrored) && m < result.meshes.size(); ++m) {
     turned.push_back(result.meshes[m]);
     if (to_normal) turned[m] = as_normals(scene.meshes[m], turned[m], metric_of(scene, m));
-    for (V3f& bent : turned[m].bent) bent.x = mirrored[m] ? -bent.x : bent.x;
+    const bool mirrored = is_mirrored(scene.meshes[m]);
+    for (V3f& bent : turned[m].bent) bent.x = mirrored ? -bent.x : bent.x;
   }
   const FileValues values =
-      file_values(file, scene, turned.empty() ? result.meshes : turned, channel.attribute);
+      file_values(file, scene, turned.empty() ? result.meshes : turned,
+                  placement_counts(scene, targets.placement), channel.attribute);
   std::map<FileValues::SetIndex, std::vector<FilePrimitive>> users;
   for (const auto& [primitive, set] : values.primitives) users[set].push_back(primitive);
   std::vector<NewAttribute> attributes;

@@ -13,9 +13,10 @@ namespace dapple {
 
 /// Where values go in the file.
 struct BakeTargets {
-  BakeChannel channel;       ///< of AO
-  bool multiply = true;      ///< AO with a COLOR_0 that the file has
-  std::string bent_channel;  ///< "_BENT_NORMAL" or "NORMAL"
+  BakeChannel channel;                                ///< of AO
+  bool multiply = true;                               ///< AO with a COLOR_0 that the file has
+  std::string bent_channel;                           ///< "_BENT_NORMAL" or "NORMAL"
+  BakePlacement placement = BakePlacement::together;  ///< of the values
 };
 
 /// Throws Error usage for a TEXCOORD_n that a primitive cannot have, because it lacks those before,

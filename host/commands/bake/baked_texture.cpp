@@ -85,18 +85,17 @@ std::vector<std::vector<V2f>> uvs_of_set(const gltf::SourceFile& file, const Sce
     if (scene.meshes[m].has_strands()) continue;
     for (const VertexSource& source : scene.meshes[m].sources) {
       const UvSet of_it = set ? set : file.occlusion_set(source.mesh, source.primitive);
-      std::vector<V2f> all;
-      if (of_it) all = file.uvs(source.mesh, source.primitive, *of_it);
-      some = some || !all.empty();
-      if (all.empty()) {
+      std::vector<V2f> own;
+      if (of_it) own = file.uvs(source, *of_it);
+      some = some || !own.empty();
+      if (own.empty()) {
         if (missing.empty() && set)
           missing = fmt::format("primitive {} of mesh {} has no TEXCOORD_{}", source.primitive,
                                 source.mesh, *set);
         if (!set) return {};
         continue;
       }
-      for (std::uint32_t i = 0; i < source.count; ++i)
-        uvs[m].push_back(all.at(source.used.empty() ? i : source.used[i]));
+      uvs[m].insert(uvs[m].end(), own.begin(), own.end());
     }
   }
   if (!some) missing.clear();
@@ -167,8 +166,11 @@ FilmMetadata metadata_of(const BakeStatistics& statistics, const std::string& so
 /// The first TEXCOORD_n that a primitive lacks and none of its textures names: one that does reads
 /// the texel at 0, 0, and must go on to.
 std::uint32_t free_uv_set(const gltf::SourceFile& file, const VertexSource& source) {
+  const std::vector<std::string> has = file.attributes(source.mesh, source.primitive);
   std::uint32_t set = file.uv_sets(source.mesh, source.primitive);
-  while (!file.texture_with_uvs(source.mesh, source.primitive, set).empty()) ++set;
+  while (std::find(has.begin(), has.end(), fmt::format("TEXCOORD_{}", set)) != has.end() ||
+         !file.texture_with_uvs(source.mesh, source.primitive, set).empty())
+    ++set;
   return set;
 }
 

@@ -1,5 +1,7 @@
 #include "commands/bake/file_values.hpp"
 
+#include <Imath/ImathVec.h>
+
 #include <algorithm>
 
 namespace dapple {
@@ -9,18 +11,24 @@ namespace {
 struct Use {
   const VertexSource* source;
   const BakedMesh* baked;
+  double weight;  ///< the number of its placements
 };
 
-/// Means over the uses of a primitive, one for each vertex that it uses.
+/// Means over the placements of a primitive, one for each vertex that it uses.
 class PrimitiveValues {
  public:
   explicit PrimitiveValues(const std::vector<Use>& uses) : source_(*uses.front().source) {
+    using Imath::V3d;
     const BakedMesh& like = *uses.front().baked;
-    ao_.resize(source_.count);
-    if (!like.bent.empty()) bent_.resize(source_.count, V3f(0, 0, 0));
-    light_.assign(like.light.size(), std::vector<V3f>(source_.count, V3f(0, 0, 0)));
-    for (const Use& use : uses) add(use);
-    divide(static_cast<float>(uses.size()));
+    put_means<double>(
+        uses, [](const BakedMesh& baked) -> auto& { return baked.ao; }, ao_);
+    if (!like.bent.empty())
+      put_means<V3d>(
+          uses, [](const BakedMesh& baked) -> auto& { return baked.bent; }, bent_);
+    light_.resize(like.light.size());
+    for (std::size_t l = 0; l < light_.size(); ++l)
+      put_means<V3d>(
+          uses, [l](const BakedMesh& baked) -> auto& { return baked.light[l]; }, light_[l]);
   }
 
   /// Whether `set` has the same values where it has some.
@@ -60,21 +68,18 @@ class PrimitiveValues {
     return source_.used.empty() ? i : source_.used[i];
   }
 
-  void add(const Use& use) {
-    for (std::uint32_t i = 0; i < source_.count; ++i) {
-      const std::uint32_t from = use.source->first + i;
-      ao_[i] += use.baked->ao[from];
-      if (!bent_.empty()) bent_[i] += use.baked->bent[from];
-      for (std::size_t l = 0; l < light_.size(); ++l) light_[l][i] += use.baked->light[l][from];
-    }
-  }
-
   /// Equal values have themselves as their mean, to the bit.
-  void divide(float count) {
-    for (float& value : ao_) value /= count;
-    for (V3f& value : bent_) value /= count;
-    for (std::vector<V3f>& of_light : light_)
-      for (V3f& value : of_light) value /= count;
+  template <class Sum, class Value, class ValuesOf>
+  void put_means(const std::vector<Use>& uses, const ValuesOf& values_of,
+                 std::vector<Value>& means) const {
+    double weights = 0;
+    for (const Use& use : uses) weights += use.weight;
+    for (std::uint32_t i = 0; i < source_.count; ++i) {
+      Sum sum(0);
+      for (const Use& use : uses)
+        sum += Sum(values_of(*use.baked)[use.source->first + i]) * use.weight;
+      means.push_back(Value(sum / weights));
+    }
   }
 
   const VertexSource& source_;
@@ -86,12 +91,14 @@ class PrimitiveValues {
 }  // namespace
 
 FileValues file_values(const gltf::SourceFile& file, const Scene& scene,
-                       const std::vector<BakedMesh>& meshes, const std::string& attribute) {
+                       const std::vector<BakedMesh>& meshes,
+                       const std::vector<std::size_t>& placements, const std::string& attribute) {
   std::map<FilePrimitive, std::vector<Use>> uses;
   for (std::size_t m = 0; m < meshes.size(); ++m) {
     if (meshes[m].ao.empty()) continue;
     for (const VertexSource& source : scene.meshes[m].sources)
-      uses[{source.mesh, source.primitive}].push_back({&source, &meshes[m]});
+      uses[{source.mesh, source.primitive}].push_back(
+          {&source, &meshes[m], static_cast<double>(std::max<std::size_t>(1, placements[m]))});
   }
   FileValues result;
   for (const auto& [primitive, of_primitive] : uses) {

@@ -38,8 +38,10 @@ struct FileValues {
 };
 
 /// `attribute`: what the values change, such as "COLOR_0", which primitives must share, too.
-/// `meshes`: those without AO are left out.
+/// `meshes`: those without AO are left out. What several meshes show has the mean over their
+/// placements, of which `placements` has the number by mesh.
 FileValues file_values(const gltf::SourceFile& file, const Scene& scene,
-                       const std::vector<BakedMesh>& meshes, const std::string& attribute);
+                       const std::vector<BakedMesh>& meshes,
+                       const std::vector<std::size_t>& placements, const std::string& attribute);
 
 }  // namespace dapple

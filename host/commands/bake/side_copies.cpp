@@ -100,4 +100,18 @@ void check_side_copies(const std::string& output,
   }
 }
 
+void check_new_sides(const std::string& output, const std::vector<std::string>& paths) {
+  if (paths.empty()) return;
+  const std::set<fs::path> earlier = files_of(output);
+  for (const std::string& path : paths) {
+    std::error_code ignored;
+    if (fs::exists(path, ignored) && !earlier.contains(fs::path(path).lexically_normal()))
+      throw Error(ErrorKind::usage,
+                  fmt::format("--output {}: {} is written beside it, but another file of that name "
+                              "is there; write to another folder, or a .glb, which embeds all, or "
+                              "remove what is there",
+                              output, path));
+  }
+}
+
 }  // namespace dapple

@@ -1,5 +1,6 @@
-// Checks the copies of buffers and images beside a .gltf before they are made. In: from where to
-// where. Out: an error for a copy that cannot be made, or that would replace another file.
+// Checks the files beside a .gltf before they are made: copies of buffers and images, and new ones.
+// In: from where to where. Out: an error for one that cannot be made, or would replace another
+// file.
 #pragma once
 
 #include <string>
@@ -13,5 +14,8 @@ namespace dapple {
 /// folder in the way of a file, and where nothing can be written.
 void check_side_copies(const std::string& output,
                        const std::vector<std::pair<std::string, std::string>>& copies);
+
+/// The same for new files beside the output, whatever they would replace.
+void check_new_sides(const std::string& output, const std::vector<std::string>& paths);
 
 }  // namespace dapple

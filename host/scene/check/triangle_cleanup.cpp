@@ -11,6 +11,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "scene/disjoint_sets.hpp"
+
 namespace dapple {
 namespace {
 
@@ -76,13 +78,11 @@ Faults count_faults(const Mesh& mesh) {
 
 // Makes both ends of a segment without length one vertex, so that the strand has no gap there.
 void join_ends(Mesh& mesh) {
-  std::vector<std::uint32_t> same(mesh.positions.size());
-  std::iota(same.begin(), same.end(), 0u);
-  for (std::size_t s = 0; s < mesh.primitive_count(); ++s) {
-    if (fault_of(mesh, s) != Fault::no_length) continue;
-    same[mesh.indices[2 * s + 1]] = same[mesh.indices[2 * s]];
-  }
-  for (std::uint32_t& index : mesh.indices) index = same[index];
+  DisjointSets same(mesh.positions.size());
+  for (std::size_t s = 0; s < mesh.primitive_count(); ++s)
+    if (fault_of(mesh, s) == Fault::no_length)
+      same.join(mesh.indices[2 * s], mesh.indices[2 * s + 1]);
+  for (std::uint32_t& index : mesh.indices) index = same.root(index);
 }
 
 void keep_sound_primitives(Mesh& mesh) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "scene/gltf/document/extension_names.hpp"
+#include "scene/gltf/line_joints.hpp"
 #include "scene/gltf/topology.hpp"
 #include "scene/gltf/vertices.hpp"
 #include "scene/message.hpp"
@@ -75,7 +76,7 @@ struct PrimitiveSource {
   const Material& material;
   const AlphaLookup& lookup;
   float line_radius;
-  bool colors;
+  bool colors, mirrored;
   const Deformation& deformation;
   const std::string& who;  ///< for messages
 };
@@ -83,7 +84,7 @@ struct PrimitiveSource {
 void append_primitive(const Document& document, const PrimitiveSource& source, Mesh& mesh,
                       MeshTotals& totals) {
   const auto& [primitive, file_mesh, file_primitive, material_index, material, lookup, line_radius,
-               colors, deformation, who] = source;
+               colors, mirrored, deformation, who] = source;
   const bool lines = is_of_lines(primitive);
   const AttributeNeeds needs = needs_of(material, lookup, lines, colors, totals);
   const Attributes attributes = read_attributes(document, primitive, needs, lookup, who);
@@ -107,9 +108,11 @@ void append_primitive(const Document& document, const PrimitiveSource& source, M
   totals.odd_alphas.add(odd.alphas, who);
   mesh.sources.push_back({file_mesh, file_primitive, static_cast<std::uint32_t>(base),
                           static_cast<std::uint32_t>(added),
-                          used ? *used : std::vector<std::uint32_t>{}});
+                          used ? *used : std::vector<std::uint32_t>{}, mirrored});
   if (lines) mesh.radii.resize(mesh.positions.size(), line_radius);
+  const std::size_t first_index = mesh.indices.size();
   append_elements(mesh, corners, base, material_index);
+  if (lines) join_lines(mesh, base, first_index);
 }
 
 /// Returns false, and counts the reason, for points, for lines without a radius, and for primitives
@@ -221,11 +224,11 @@ std::vector<MeshPart> read_mesh(const Document& document, const MeshUse& use,
     const std::uint32_t at = materials.index_of(primitive.material);
     const Material& material = scene.materials[at];
     Mesh& mesh = draft_for(drafts, emitter_of(material, at, lines, totals), lines);
-    append_primitive(
-        document,
-        {primitive, static_cast<std::uint32_t>(use.mesh), static_cast<std::uint32_t>(p), at,
-         material, materials.lookups[at], use.line_radius, use.colors, deformation, who},
-        mesh, totals);
+    append_primitive(document,
+                     {primitive, static_cast<std::uint32_t>(use.mesh),
+                      static_cast<std::uint32_t>(p), at, material, materials.lookups[at],
+                      use.line_radius, use.colors, use.mirrored, deformation, who},
+                     mesh, totals);
   }
   const std::string name =
       given.name.empty() ? fmt::format("mesh_{}", use.mesh) : one_line(given.name);

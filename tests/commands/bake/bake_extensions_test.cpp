@@ -92,6 +92,17 @@ TEST_F(BakeExtensions, VariantsNameTheCopiesOfMaterialsThatOtherMeshesUse) {
   EXPECT_EQ(after["meshes"][1], builder.doc["meshes"][1]);
 }
 
+// JSON makes no difference between 1.0 and 1.
+TEST_F(BakeExtensions, VariantsMayWriteTheirMaterialWithAPoint) {
+  GltfBuilder builder = triangle_with_variants();
+  json& mappings = builder.doc["meshes"][0]["primitives"][0]["extensions"][kVariants]["mappings"];
+  mappings[0]["material"] = 1.0;
+  write("in.glb", builder.glb());
+  const json after = baked("--to texture --size 16");
+  EXPECT_EQ(after["materials"].size(), 2u);
+  for (int material : {0, 1}) EXPECT_EQ(occlusion_of(after, material)["index"], 0) << material;
+}
+
 TEST_F(BakeExtensions, EmbeddedImagesHaveTheirOwnMediaType) {
   GltfBuilder builder = rich_triangle();
   builder.doc["images"] = {{{"uri", "leaf.webp"}}};
@@ -147,6 +158,23 @@ TEST_F(BakeExtensions, TextureCoordinatesThatATextureUsesAreNotReplaced) {
   std::filesystem::remove(path("out.glb"));
   expect_failure(dapple("bake in.glb -o out.glb --channel TEXCOORD_1.x"), 2,
                  "texture of its own extensions");
+}
+
+TEST_F(BakeExtensions, TextureCoordinatesThatATextureNamesWithAPointAreNotReplaced) {
+  GltfBuilder builder = triangle_with_variants();
+  json& attributes = builder.doc["meshes"][0]["primitives"][0]["attributes"];
+  attributes["TEXCOORD_0"] = attributes["TEXCOORD_1"] =
+      builder.add_accessor(std::vector<float>{0, 0, 1, 0, 0, 1}, test::kFloat, "VEC2");
+  const int image =
+      builder.add("images", {{"bufferView", builder.add_view(test::png::with_alpha(1, 1, {255}))},
+                             {"mimeType", "image/png"}});
+  builder.add("textures", {{"source", image}});
+  builder.doc["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 0},
+                                                                             {"texCoord", 1.0}};
+  write("in.glb", builder.glb());
+  expect_failure(dapple("bake in.glb -o out.glb --channel TEXCOORD_1.x"), 2,
+                 "baseColorTexture of material 0 (\"summer\")");
+  EXPECT_EQ(files_in_folder(), 1u);
 }
 
 TEST_F(BakeCommand, UnlitMaterialsAreNotedWhereTheyGetATexture) {

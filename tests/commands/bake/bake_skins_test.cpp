@@ -113,6 +113,20 @@ class BakeSkins : public BakeCommand {
     return {texture, file.doc["textures"][texture["index"].get<std::size_t>()]};
   }
 
+  /// Bakes the file; returns the mean of the bent normals of its first mesh along x.
+  [[nodiscard]] float bent_x(const GltfBuilder& builder) const {
+    write("in.glb", builder.glb());
+    const Outcome run =
+        dapple("bake in.glb -o out.glb --channel _AO --passes ao,bent --sides front --rays 4096");
+    EXPECT_EQ(run.code, 0) << run.err;
+    const GltfData file(path("out.glb"));
+    const json& attributes = file.doc["meshes"][0]["primitives"][0]["attributes"];
+    const std::vector<float> xyz = file.floats(attributes["_BENT_NORMAL"]);
+    float sum = 0;
+    for (std::size_t i = 0; i < xyz.size(); i += 3) sum += xyz[i];
+    return 3 * sum / static_cast<float>(xyz.size());
+  }
+
   /// Of the mesh that node number `node` of out.glb shows.
   [[nodiscard]] json primitive_of(std::size_t node) const {
     const json doc = document("out.glb");
@@ -175,6 +189,53 @@ TEST_F(BakeSkins, OfUniqueMeshesAreKept) {
     const json doc = document("out.glb");
     EXPECT_NE(doc["nodes"][kFirst]["mesh"], doc["nodes"][kSecond]["mesh"]);
   }
+}
+
+/// A small square at the origin that faces up, beside a wall at x = 1.1. Its node has a skin of one
+/// joint, which stands at the origin; the square follows it if it is `bound`.
+GltfBuilder square_beside_a_wall(bool bound) {
+  GltfBuilder builder;
+  const std::vector<std::uint16_t> corners{0, 1, 2, 0, 2, 3};
+  const int indices = builder.add_accessor(corners, test::kUint16, "SCALAR");
+  const float s = 0.01f;
+  json attributes = {{"POSITION", builder.add_positions({-s, 0, -s, -s, 0, s, s, 0, s, s, 0, -s})}};
+  if (bound) {
+    std::vector<float> weights(16);
+    for (std::size_t v = 0; v < 4; ++v) weights[4 * v] = 1;
+    attributes["JOINTS_0"] =
+        builder.add_accessor(std::vector<std::uint8_t>(16), test::kUint8, "VEC4");
+    attributes["WEIGHTS_0"] = builder.add_accessor(weights, test::kFloat, "VEC4");
+  }
+  builder.add_mesh({{"attributes", attributes}, {"indices", indices}});
+  const int wall =
+      builder.add_positions({1.1f, -99, -99, 1.1f, -99, 99, 1.1f, 99, 99, 1.1f, 99, -99});
+  builder.add_mesh({{"attributes", {{"POSITION", wall}}}, {"indices", indices}});
+  builder.doc["nodes"][0]["skin"] = 0;
+  builder.add("skins", {{"joints", {builder.add("nodes", {{"name", "joint"}})}}});
+  return builder;
+}
+
+// The wall hides all directions with x > 0 in the world but for one part in 10^4. Of the others the
+// cosine-weighted mean is (-2/3, pi/3) along x and up, whose unit vector has x = -2 / sqrt(4 +
+// pi^2). Four vertices with 4096 rays each err by less than 0.01. Squares that are mirrored along x
+// have the opposite sign in object space.
+constexpr float kBentX = 0.537f, kTolerance = 0.03f;
+
+TEST_F(BakeSkins, BentNormalsOfRigidMeshesOfMirroredSkinsAreNotMirrored) {
+  GltfBuilder builder = square_beside_a_wall(false);
+  builder.doc["nodes"][0]["scale"] = {-1, 1, 1};
+  EXPECT_NEAR(bent_x(builder), kBentX, kTolerance);
+}
+
+TEST_F(BakeSkins, BentNormalsOfMirroredInstancesAreNotMirroredAsThoseOfMirroredNodesAre) {
+  GltfBuilder of_node = square_beside_a_wall(true), of_instance = of_node;
+  of_node.doc["nodes"][0]["scale"] = {-1, 1, 1};
+  EXPECT_NEAR(bent_x(of_node), -kBentX, kTolerance) << "a skin ignores its node's place";
+  const int scale = of_instance.add_accessor(std::vector<float>{-1, 1, 1}, test::kFloat, "VEC3");
+  of_instance.doc["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {
+      {"SCALE", scale}};
+  of_instance.doc["extensionsUsed"] = {"EXT_mesh_gpu_instancing"};
+  EXPECT_NEAR(bent_x(of_instance), kBentX, kTolerance);
 }
 
 }  // namespace

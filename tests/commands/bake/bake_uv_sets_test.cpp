@@ -189,6 +189,32 @@ TEST_F(BakeUvSets, ASetThatAColourTextureReadsInVainIsNotTaken) {
   EXPECT_NE(file.floats(attributes["TEXCOORD_1"]), std::vector<float>(6));
 }
 
+// Valid files have no such gap. It is filled with zeros: its texture shows the texel at 0, 0.
+TEST_F(BakeUvSets, ASetBehindAMissingOneThatATextureNamesIsKept) {
+  GltfBuilder builder;
+  builder.add_triangle();
+  json& primitive = builder.doc["meshes"][0]["primitives"][0];
+  const std::vector<float> kept{0, 0, 2, 0, 0, 3};  // leaves the texture
+  for (const char* set : {"TEXCOORD_0", "TEXCOORD_2"})
+    primitive["attributes"][set] = builder.add_accessor(kept, test::kFloat, "VEC2");
+  primitive["material"] = 0;
+  const int view = builder.add_view(test::png::with_alpha(1, 1, {255}));
+  builder.doc["images"] = json::array({{{"bufferView", view}, {"mimeType", "image/png"}}});
+  builder.doc["textures"] = json::array({{{"source", 0}}});
+  builder.doc["materials"] = json::array(
+      {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}, {"texCoord", 1}}}}}}});
+  write("in.glb", builder.glb());
+  const std::string notes = notes_of();
+  EXPECT_TRUE(contains(notes, "coordinates of its own, TEXCOORD_3")) << notes;
+  EXPECT_EQ(set_used(), 3);
+  const test::GltfData file(path("out.glb"));
+  const json attributes = file.doc["meshes"][0]["primitives"][0]["attributes"];
+  EXPECT_EQ(file.floats(attributes["TEXCOORD_2"]), kept);
+  EXPECT_TRUE(attributes.contains("TEXCOORD_3"));
+  EXPECT_EQ(file.floats(attributes["TEXCOORD_1"]), std::vector<float>(6));
+  std::filesystem::remove(path("in.glb"));  // it is not valid
+}
+
 TEST_F(BakeUvSets, ASecondBakeUsesTheCoordinatesThatTheFirstOneMade) {
   write_squares({{{kFull, kFull}, {kFull}}});
   const std::string first = notes_of();

@@ -37,6 +37,22 @@ TEST(GltfLines, EveryModeGivesTheSegmentsThatGltfSays) {
   EXPECT_EQ(only_mesh(lines_of(kLoop)).indices, (Ends{0, 1, 1, 2, 2, 3, 3, 0}));
 }
 
+// As exporters write lines without indices. What meets in threes, or looks otherwise, has its end.
+TEST(GltfLines, SegmentsWithVerticesOfTheirOwnAreJoined) {
+  const std::vector<float> bend = {0, 0, 0, 1, 0, 0, 1, 0, 0, 1, 1, 0, 1, 1, 0, 0, 1, 0};
+  EXPECT_EQ(only_mesh(lines_of(kLines, bend)).indices, (Ends{0, 1, 1, 3, 3, 5}));
+  const std::vector<float> star = {0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1};
+  EXPECT_EQ(only_mesh(lines_of(kLines, star)).indices, (Ends{0, 1, 2, 3, 4, 5}));
+  GltfBuilder builder = lines_of(kLines, bend);
+  builder.doc["materials"] = {{{"alphaMode", "BLEND"}}};
+  json& primitive = builder.doc["meshes"][0]["primitives"][0];
+  primitive["material"] = 0;
+  primitive["attributes"]["COLOR_0"] = builder.add_accessor(
+      std::vector<float>{1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, .5f, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1},
+      kFloat, "VEC4");
+  EXPECT_EQ(only_mesh(builder).indices, (Ends{0, 1, 2, 3, 3, 5}));
+}
+
 TEST(GltfLines, ALoopOfTwoPointsIsOneSegment) {
   EXPECT_EQ(only_mesh(lines_of(kLoop, {0, 0, 0, 1, 0, 0})).indices, (Ends{0, 1}));
 }

@@ -35,13 +35,22 @@ constexpr std::array<std::int8_t, 256> kBase64 = [] {
   return table;
 }();
 
+/// Line breaks and blanks, which some encoders write, count for nothing.
 Bytes decode_base64(std::string_view text, const std::string& what) {
+  constexpr std::string_view kBlanks = " \t\r\n";
+  const auto trim = [&] {
+    while (!text.empty() && kBlanks.find(text.back()) != std::string_view::npos)
+      text.remove_suffix(1);
+  };
+  trim();
   for (int padding = 0; padding < 2 && text.ends_with('='); ++padding) text.remove_suffix(1);
+  trim();
   Bytes bytes;
   bytes.reserve(text.size() / 4 * 3 + 3);
   std::uint32_t bits = 0;
   int bit_count = 0;
   for (const char c : text) {
+    if (kBlanks.find(c) != std::string_view::npos) continue;
     const std::int8_t value = kBase64[static_cast<unsigned char>(c)];
     if (value < 0) fail(what, "its data: URI holds a character that is not base64");
     bits = (bits << 6) | static_cast<std::uint32_t>(value);
@@ -127,11 +136,24 @@ std::string percent_encode(std::string_view name) {
   return text;
 }
 
+namespace {
+
+/// Names of parameters have no case (RFC 2045).
+bool has_base64(std::string_view head) {
+  constexpr std::string_view kEnd = ";base64";
+  return head.size() >= kEnd.size() &&
+         std::equal(kEnd.begin(), kEnd.end(), head.end() - kEnd.size(), [](char a, char b) {
+           return a == std::tolower(static_cast<unsigned char>(b));
+         });
+}
+
+}  // namespace
+
 Bytes decode_data_uri(std::string_view uri, const std::string& what) {
   const std::size_t comma = uri.find(',');
   if (comma == std::string_view::npos) fail(what, "its data: URI has no comma");
   const std::string_view payload = uri.substr(comma + 1);
-  if (uri.substr(0, comma).ends_with(";base64")) return decode_base64(payload, what);
+  if (has_base64(uri.substr(0, comma))) return decode_base64(payload, what);
   const std::string text = percent_decode(payload);
   return Bytes(text.begin(), text.end());
 }

@@ -6,8 +6,10 @@
 
 #include "files/output_file.hpp"
 #include "scene/glb/glb_bytes.hpp"
+#include "scene/gltf/document/extension_names.hpp"
 #include "scene/gltf/document/uri.hpp"
 #include "scene/gltf/edit/compaction.hpp"
+#include "scene/gltf/edit/extension_use.hpp"
 #include "scene/images/media_type.hpp"
 #include "scene/message.hpp"
 
@@ -23,6 +25,20 @@ void align(std::string& bytes, std::size_t multiple) {
 template <class Range>
 void append(std::string& bytes, const Range& range) {
   bytes.append(reinterpret_cast<const char*>(range.data()), range.size());
+}
+
+/// Relative paths that extensions name, such as sounds and schemas: members `uri` and `schemaUri`.
+void append_extension_uris(const Json& element, bool in_extensions,
+                           std::vector<std::string>& uris) {
+  for (const auto& [key, value] : element.items()) {
+    if (key == "extras") continue;
+    const bool names_file = in_extensions && (key == "uri" || key.ends_with("Uri"));
+    if (names_file && value.is_string() && !value.get_ref<const std::string&>().empty() &&
+        !has_scheme(value.get_ref<const std::string&>()))
+      uris.push_back(value.get<std::string>());
+    if (value.is_structured())
+      append_extension_uris(value, in_extensions || key == "extensions", uris);
+  }
 }
 
 }  // namespace
@@ -75,6 +91,7 @@ void Editor::write(PendingFiles& files) {
   if (is_glb_out()) {
     align(bytes_, 4);
     const std::string_view binary = bytes_;
+    copy_side_files();
     write_glb_bytes(files.add(out_), text, {&binary, 1}, content().container.others);
     return;
   }
@@ -91,11 +108,9 @@ void Editor::remove_buffer() {
   if (buffers.empty()) json_.erase("buffers");
 }
 
-std::vector<std::string> Editor::side_files_written() const {
+std::vector<std::string> Editor::new_side_files() const {
   if (is_glb_out()) return {};
-  std::vector<std::string> files{(fs::path(out_).parent_path() / side_name()).string()};
-  for (const auto& [from, to] : side_copies()) files.push_back(to);
-  return files;
+  return {(fs::path(out_).parent_path() / side_name()).string()};
 }
 
 bool Editor::is_glb_out() const { return fs::path(out_).extension() != ".gltf"; }
@@ -141,7 +156,8 @@ void Editor::start_from_binary() {
   buffer_ = 0;
 }
 
-// All buffers become the GLB's own, which has the first one's name and extras.
+// All buffers become the GLB's own, which has the first one's name and extras. So do those that
+// compressed views fill: what these hold stays decompressed.
 void Editor::embed_buffers() {
   std::vector<std::size_t> begin;
   for (const auto& buffer : content().document.buffers) {
@@ -151,6 +167,7 @@ void Editor::embed_buffers() {
   }
   if (json_.contains("bufferViews")) {
     for (Json& view : json_["bufferViews"]) {
+      remove_extension(view, extension::kMeshopt);
       if (view.contains("extensions") && !view["extensions"].empty())
         fail(content().document.file,
              "has bufferViews with extensions, which cannot be embedded; write a .gltf file");
@@ -162,7 +179,9 @@ void Editor::embed_buffers() {
   Json first =
       json_.contains("buffers") && !json_["buffers"].empty() ? json_["buffers"][0] : Json::object();
   first.erase("uri");
+  remove_extension(first, extension::kMeshopt);
   json_["buffers"] = Json::array({std::move(first)});
+  unlist_unused_extension(json_, extension::kMeshopt);
   buffer_ = 0;
 }
 
@@ -193,22 +212,20 @@ void Editor::copy_side_files() const {
 }
 
 std::vector<std::pair<std::string, std::string>> Editor::side_copies() const {
-  if (is_glb_out()) return {};
+  std::vector<std::string> uris;
+  for (const char* array : {"buffers", "images"})
+    for (const Json& entry : content().json.value(array, Json::array()))
+      if (!is_glb_out() && entry.contains("uri")) uris.push_back(entry["uri"].get<std::string>());
+  append_extension_uris(content().json, false, uris);
   const fs::path folder = fs::path(out_).parent_path();
   std::vector<std::pair<std::string, std::string>> files;
-  for (const char* array : {"buffers", "images"}) {
-    const Json& source = content().json;
-    if (!source.contains(array)) continue;
-    for (const Json& entry : source[array]) {
-      if (!entry.contains("uri")) continue;
-      const auto uri = entry["uri"].get<std::string>();
-      if (is_data_uri(uri)) continue;
-      const fs::path from = resolve_uri(content().document.base, uri, uri);
-      const fs::path to = folder / percent_decode(uri);
-      std::error_code ignored;
-      if (fs::exists(from) && !fs::equivalent(from, to, ignored))
-        files.emplace_back(from.string(), to.string());
-    }
+  for (const std::string& uri : uris) {
+    if (is_data_uri(uri)) continue;
+    const fs::path from = resolve_uri(content().document.base, uri, uri);
+    const fs::path to = folder / percent_decode(uri);
+    std::error_code ignored;
+    if (fs::is_regular_file(from, ignored) && !fs::equivalent(from, to, ignored))
+      files.emplace_back(from.string(), to.string());
   }
   return files;
 }

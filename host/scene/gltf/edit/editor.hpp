@@ -28,18 +28,19 @@ class Editor {
   /// Adds an image: in the buffer of a .glb, in the file image_path(suffix) beside a .gltf.
   std::size_t add_image(const std::string& png, const std::string& suffix);
 
-  /// Adds `out` to `files`. Data of a .gltf go to a file beside it. Buffers and images that the
-  /// file names are copied there at once, one after the other, unless they are there already.
+  /// Adds `out` to `files`. Data of a .gltf go to a file beside it. Files that the source names are
+  /// copied there at once, one after the other, unless they are there already (side_copies()).
   void write(PendingFiles& files);
 
   /// NAME`suffix`.png beside `out`, or with a number if the source has an image of that name.
   [[nodiscard]] std::string image_path(const std::string& suffix) const;
 
-  /// Files that write() copies beside a .gltf: from where to where. None that are in place.
+  /// Files that write() copies beside the output: from where to where. None that are in place.
+  /// Beside a .glb, which has its buffers and images, those that extensions name.
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> side_copies() const;
 
   /// Other files that write() may write, without images of add_image().
-  [[nodiscard]] std::vector<std::string> side_files_written() const;
+  [[nodiscard]] std::vector<std::string> new_side_files() const;
 
  private:
   [[nodiscard]] bool is_glb_out() const;

@@ -3,6 +3,7 @@
 #include <cctype>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "scene/gltf/document/accessor.hpp"
@@ -19,6 +20,27 @@ namespace {
 std::string lower_case(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return text;
+}
+
+/// Indices that are written as 1.0 become 1: JSON makes no difference, edits of the file do.
+void write_whole_indices(Json& element) {
+  static const std::set<std::string, std::less<>> kKeys = {
+      "accessor", "buffer", "bufferView", "camera",   "index",     "indices",
+      "input",    "light",  "material",   "mesh",     "node",      "output",
+      "sampler",  "skin",   "source",     "texCoord", "attributes"};
+  for (auto& [key, value] : element.items()) {
+    if (key == "extras") continue;
+    const auto is_whole = [](const Json& number) {
+      return number.is_number_float() && number.get<double>() >= 0 &&
+             number.get<double>() < 4294967296.0 &&
+             number.get<double>() == std::floor(number.get<double>());
+    };
+    if (kKeys.contains(key) && is_whole(value)) value = value.get<std::uint64_t>();
+    if (key == "attributes" && value.is_object())
+      for (Json& index : value)
+        if (is_whole(index)) index = index.get<std::uint64_t>();
+    if (value.is_structured()) write_whole_indices(value);
+  }
 }
 
 using Readers = std::map<std::string, AccessorReader>;
@@ -79,6 +101,7 @@ SourceFile::SourceFile(const std::string& path, bool allow_outside)
           read_regular_file(path, path), {}, load_document(path, allow_outside), {}, 0}) {
   content->container = split_container(content->bytes, path);
   content->json = Json::parse(content->container.json);
+  write_whole_indices(content->json);
   content->meshes_of_file = static_cast<std::uint32_t>(content->document.model.meshes.size());
 }
 SourceFile::~SourceFile() { delete content; }
@@ -170,6 +193,16 @@ std::vector<Imath::V2f> SourceFile::uvs(std::uint32_t mesh, std::uint32_t primit
   if (!reader) return {};
   std::vector<Imath::V2f> uvs(reader->count());
   for (std::size_t i = 0; i < uvs.size(); ++i) uvs[i] = reader->vec2(i);
+  return uvs;
+}
+
+std::vector<Imath::V2f> SourceFile::uvs(const VertexSource& source, std::uint32_t set) const {
+  const auto reader = read_uvs(content->document, content->primitive(source.mesh, source.primitive),
+                               set, primitive_label(source.mesh, source.primitive));
+  if (!reader) return {};
+  std::vector<Imath::V2f> uvs(source.count);
+  for (std::uint32_t i = 0; i < source.count; ++i)
+    uvs[i] = reader->vec2(source.used.empty() ? i : source.used[i]);
   return uvs;
 }
 

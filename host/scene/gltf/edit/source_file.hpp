@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "dapple/scene.hpp"
+
 namespace dapple::gltf {
 
 /// The file's COLOR_0 of a primitive, four components for each vertex, missing ones 1; empty if it
@@ -39,6 +41,8 @@ struct SourceFile {
   /// TEXCOORD_`set` of a primitive, of all its vertices; empty if it has none.
   [[nodiscard]] std::vector<Imath::V2f> uvs(std::uint32_t mesh, std::uint32_t primitive,
                                             std::uint32_t set) const;
+  /// The same of the vertices that a mesh of the scene shows.
+  [[nodiscard]] std::vector<Imath::V2f> uvs(const VertexSource& source, std::uint32_t set) const;
   /// The first texture of a primitive's materials, those of its variants too, that reads
   /// TEXCOORD_`set`: `baseColorTexture of material 2 ("bark")`. Empty if none does.
   [[nodiscard]] std::string texture_with_uvs(std::uint32_t mesh, std::uint32_t primitive,

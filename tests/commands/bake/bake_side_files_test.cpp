@@ -1,0 +1,106 @@
+// Files beside the output of dapple bake: those of another asset are not replaced, and those that
+// extensions name go to the output's folder, too.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "support/programs/bake_command.hpp"
+
+namespace dapple {
+namespace {
+
+using namespace film_test;
+using namespace program_test;
+namespace fs = std::filesystem;
+
+class BakeSideFiles : public BakeCommand {
+ protected:
+  BakeSideFiles() {
+    for (const char* folder : {"in", "out"}) fs::create_directory(path(folder));
+  }
+
+  /// in/tree.gltf with in/tree.bin.
+  void write_tree(const GltfBuilder& builder) const {
+    json doc = builder.doc;
+    doc["buffers"] = {{{"byteLength", builder.bin.size()}, {"uri", "tree.bin"}}};
+    write("in/tree.bin", builder.bin);
+    std::ofstream(path("in/tree.gltf")) << doc.dump();
+  }
+
+  /// Paths of the files below out/.
+  [[nodiscard]] std::set<std::string> written() const {
+    std::set<std::string> files;
+    for (const auto& entry : fs::recursive_directory_iterator(path("out")))
+      if (entry.is_regular_file())
+        files.insert(entry.path().lexically_relative(path("out")).generic_string());
+    return files;
+  }
+};
+
+TEST_F(BakeSideFiles, OfAnotherAssetAreNotReplacedAndThoseOfAnEarlierBakeAre) {
+  write_tree(rich_triangle());
+  const std::string bake =
+      "bake in/tree.gltf -o out/tree.gltf --to texture --size 16 --uv own --rays 8";
+  for (const std::string foreign : {"tree_ao.png", "tree_baked.bin"}) {
+    SCOPED_TRACE(foreign);
+    write_bytes(path("out/" + foreign), "of another asset");
+    expect_failure(dapple(bake), 2, "out/" + foreign + " is written beside it");
+    EXPECT_EQ(written(), std::set{foreign});
+    EXPECT_EQ(bytes_of(path("out/" + foreign)), "of another asset");
+    fs::remove(path("out/" + foreign));
+  }
+  std::set<std::string> first;
+  for (const int time : {1, 2}) {
+    SCOPED_TRACE(time);
+    const Outcome run = dapple(bake);
+    ASSERT_EQ(run.code, 0) << run.err;
+    if (time == 1) first = written();
+    EXPECT_EQ(written(), first);
+  }
+  for (const char* file : {"tree.gltf", "tree.bin", "tree_ao.png", "tree_baked.bin"})
+    EXPECT_TRUE(first.contains(file)) << file;
+}
+
+/// A triangle with files that extensions name, and strings that are no such names.
+GltfBuilder triangle_with_sounds() {
+  GltfBuilder builder = rich_triangle();
+  json& audio = builder.doc["extensions"]["KHR_audio"];
+  audio["audio"] = {{{"uri", "wind.mp3"}},
+                    {{"uri", "sounds/far%20rain.mp3"}},
+                    {{"uri", "data:audio/mpeg;base64,AAAA"}},
+                    {{"uri", "http://localhost/wind.mp3"}},
+                    {{"uri", "absent.mp3"}}};
+  audio["extras"] = {{"uri", "notes.txt"}};
+  builder.doc["extensions"]["EXT_structural_metadata"] = {{"schemaUri", "schema.json"}};
+  builder.doc["extras"] = {{"uri", "notes.txt"},
+                           {"extensions", {{"KHR_audio", {{"uri", "notes.txt"}}}}}};
+  for (const char* name : {"KHR_audio", "EXT_structural_metadata"})
+    builder.doc["extensionsUsed"].push_back(name);
+  return builder;
+}
+
+TEST_F(BakeSideFiles, ThatExtensionsNameAreCopiedAndThoseOfExtrasAreNot) {
+  write_tree(triangle_with_sounds());
+  const std::set<std::string> named = {"wind.mp3", "sounds/far rain.mp3", "schema.json"};
+  for (const std::string& file : named) write_bytes(path("in/" + file), "content of " + file);
+  write_bytes(path("in/notes.txt"), "of nobody else");
+  for (const auto& [output, others] : std::map<std::string, std::set<std::string>>{
+           {"tree.gltf", {"tree.gltf", "tree.bin", "tree_baked.bin"}},
+           {"tree.glb", {"tree.glb"}}}) {
+    SCOPED_TRACE(output);
+    const Outcome run = dapple("bake in/tree.gltf --rays 8 -o out/" + output);
+    ASSERT_EQ(run.code, 0) << run.err;
+    std::set<std::string> expected = named;
+    expected.insert(others.begin(), others.end());
+    EXPECT_EQ(written(), expected);
+    for (const std::string& file : named)
+      EXPECT_EQ(bytes_of(path("out/" + file)), "content of " + file);
+    for (const char* key : {"extensions", "extras"})
+      EXPECT_EQ(document("out/" + output)[key], document("in/tree.gltf")[key]);
+    fs::remove_all(path("out"));
+    fs::create_directory(path("out"));
+  }
+}
+
+}  // namespace
+}  // namespace dapple
