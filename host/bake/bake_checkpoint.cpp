@@ -142,6 +142,7 @@ void BakeCheckpoint::record(std::span<const SurfaceSample> samples, std::uint32_
 void BakeCheckpoint::save(bool now) {
   if (control_.checkpoint.empty() || saved_ == calls_.size()) return;
   if (!now && since_saved_.seconds() < control_.checkpoint_every) return;
+  const bool failed_before = !failure_.empty();
   failure_.clear();
   try {
     const std::string about = text_of(settings_);
@@ -152,6 +153,7 @@ void BakeCheckpoint::save(bool now) {
     saved_ = calls_.size();
   } catch (const Error& error) {
     failure_ = error.what();
+    if (control_.warn && !failed_before && !now) control_.warn(failure_);
   }
   since_saved_ = Stopwatch();
 }

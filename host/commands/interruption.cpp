@@ -11,6 +11,7 @@
 #include <thread>
 #include <utility>
 
+#include "commands/tell.hpp"
 #include "device/driver_crash.hpp"
 
 namespace dapple {
@@ -147,6 +148,10 @@ void catch_interruptions() {
     keep_signal_handler(signal);
   }
   keep_signal_handler(SIGQUIT);  // Ctrl-\ ends the process, as by default
+}
+
+void warn_of_checkpoint(const std::string& reason) {
+  tell("\nnote: {}; the work goes on, and it is tried again\n", reason);
 }
 
 Stop save_when_interrupted() {

@@ -25,6 +25,9 @@ Stop save_when_interrupted();
 /// question whether to stop, with the fraction done; it calls `progress`.
 Progress end_early(const std::string& path, const std::string& resumed, Progress progress);
 
+/// For RenderControl::warn.
+void warn_of_checkpoint(const std::string& reason);
+
 /// All slices of a picture or bake are traced: until the next question whether to stop, a signal no
 /// longer ends the process after twenty seconds, since writing what is finished may take longer.
 void slices_are_traced();

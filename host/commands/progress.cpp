@@ -47,6 +47,7 @@ void ProgressBar::show(double done) {
       now - last_ <
           (terminal_ ? kRedraw : std::chrono::duration_cast<std::chrono::milliseconds>(kLineEvery)))
     return;
+  if (!terminal_ && done <= begun_) return;  // how long it takes is not known
   last_ = now;
   const double elapsed = std::chrono::duration<double>(now - start_).count();
   const std::string left =

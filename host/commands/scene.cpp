@@ -56,6 +56,8 @@ Run add_scene_command(CLI::App& app) {
   app.footer(catalogue());
   return [a] {
     check_outputs({{"--output", a->output}});
+    if (!a->output.ends_with(".glb"))
+      throw Error(ErrorKind::usage, fmt::format("--output is {}; it must end in .glb", a->output));
     const Scene scene = make_procedural(scene_name(*a));
     write_glb(scene, a->output);
     if (a->quiet) return;

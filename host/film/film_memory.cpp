@@ -1,9 +1,9 @@
 #include "film/film_memory.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "dapple/error.hpp"
+#include "film/memory_limit.hpp"
 #include "film/sums/film_sums.hpp"
 
 namespace dapple {
@@ -18,10 +18,6 @@ constexpr std::size_t kDeepBytes = 200;      // DeepSums and DeepAlpha, eight de
 constexpr std::size_t kPlanBytes = 12;       // PixelWork, the number of samples
 
 }  // namespace
-
-double machine_bytes() {
-  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-}
 
 /// All values count twice. Sums are on the device and, unless it shares the host's memory, in the
 /// host's copy; channels are in the film and in the file that is being written.

@@ -12,9 +12,6 @@
 
 namespace dapple {
 
-/// Bytes of memory of this machine; not above 0: not known.
-double machine_bytes();
-
 /// Throws Error usage when the sums and layers of a picture of this many lights take more than
 /// half of the machine's memory. `options`: its further layers.
 void check_film_memory(const View& view, std::size_t light_count,

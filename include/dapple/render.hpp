@@ -104,6 +104,9 @@ struct RenderControl {
   /// Asked once when `stop` ended a render whose checkpoint is written. true: the film is left
   /// without planes, so that the caller ends sooner.
   std::function<bool()> skip_film = {};
+  /// Called with the reason when a checkpoint cannot be written while the work goes on: once, and
+  /// again after one could be written.
+  std::function<void(const std::string&)> warn = {};
 };
 
 /// Renders pictures one after the other, for example of a scene that moves. Keeps the device, its

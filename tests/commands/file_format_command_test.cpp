@@ -1,5 +1,5 @@
 // The options of the EXR file: what a render writes with them, and that a checkpoint, another
-// render and `dapple compare` go with files written so.
+// render and `dapple compare` go with files written so. The name of the file of `dapple scene`.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -62,6 +62,15 @@ TEST_F(FileFormatCommand, EveryLayerOfAPictureMayBeNamed) {
     const auto run = dapple("render missing.glb -o o.exr --half " + layer);
     EXPECT_TRUE(run.code == 3 || contains(run.err, "stays 32-bit")) << layer << ": " << run.err;
   }
+}
+
+TEST_F(FileFormatCommand, ASceneIsWrittenOnlyToANameThatEndsInGlb) {
+  for (const char* name : {"s.gltf", "s.GLTF", "s", "glb"})
+    expect_failure(dapple("scene disk -o " + std::string(name)), 2,
+                   "--output is " + std::string(name) + "; it must end in .glb");
+  EXPECT_EQ(files_in_folder(), 0u);
+  EXPECT_EQ(dapple("scene disk -o s.glb -q").code, 0);
+  EXPECT_EQ(bytes_of(path("s.glb")).substr(0, 4), "glTF");
 }
 
 }  // namespace

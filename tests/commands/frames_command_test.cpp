@@ -242,7 +242,7 @@ TEST_F(FramesCommand, InvalidArgumentsAreRefusedBeforeAnythingIsRendered) {
   refuses("--frames 1-2 -o o.#.exr --resume c", "--resume is for one image");
   refuses("--frames 1-2 --frame 1 -o o.#.exr", "--frame");
   refuses("--frames 1-2 --crop 0,0,3,3 -o o.#.dapple", "--crop with --frames needs --ambient");
-  refuses("--fps 24 -o o.exr", "--frames");
+  refuses("--fps 24 -o o.exr", "--fps needs --frame, --frames, --shutter or --passes motion");
   refuses("--passes motion -o o.exr", "--passes motion needs --frame or --frames");
   refuses("--shutter 0,1 -o o.exr", "--shutter needs --frame or --frames");
   refuses("--frame 1 --shutter 1,0 -o o.exr", "--shutter 1,0: it must close after it opens");

@@ -153,5 +153,16 @@ TEST_F(FramesOptions, FramesHaveTheSameNoiseUnlessTheSeedIsAnimated) {
   EXPECT_NE(still.err.find("--animate-seed needs --frames"), std::string::npos) << still.err;
 }
 
+// Scripts give it to all frames: only shutters and motion vectors depend on it.
+TEST_F(FramesOptions, FpsGoWithASingleFrameWhosePictureTheyDoNotChange) {
+  const std::string render =
+      "render 'scene:tree?leaves=200&wind=1' --width 16 --height 9 --spp 2 -q --frame 0.5 ";
+  ASSERT_EQ(dapple(render + "-o without.exr").code, 0);
+  const Outcome run = dapple(render + "--fps 30 -o with.exr");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_TRUE(bytes_of(path("with.exr")) == bytes_of(path("without.exr")));
+  expect_failure(dapple(render + "--fps 0 -o no.exr"), 2, "--fps must be a number above 0");
+}
+
 }  // namespace
 }  // namespace dapple

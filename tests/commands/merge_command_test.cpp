@@ -149,5 +149,23 @@ TEST_F(MergeCommand, PreviewsHaveTheHeatMapOfARender) {
   EXPECT_FALSE(std::filesystem::exists(path("sum.dapple")));
 }
 
+TEST_F(MergeCommand, PartsMayHaveTheirOpacitiesInAnotherOrder) {
+  const std::string leaf = "--opacity leaf=0.5 ", bark = "--opacity bark=0.7 ";
+  ASSERT_EQ(dapple(kTree + leaf + bark + "-o whole.exr").code, 0);
+  ASSERT_EQ(dapple(kTree + leaf + bark + "--shard 1/2 -o a.dapple").code, 0);
+  ASSERT_EQ(dapple(kTree + bark + leaf + "--shard 2/2 -o b.dapple").code, 0);
+  const Film whole = read_exr(path("whole.exr"));
+  for (const char* parts : {"a.dapple b.dapple", "b.dapple a.dapple"}) {
+    SCOPED_TRACE(parts);
+    const Outcome merge = dapple("merge " + std::string(parts) + " -o m.exr");
+    ASSERT_EQ(merge.code, 0) << merge.err;
+    const Film merged = read_exr(path("m.exr"));
+    ASSERT_EQ(merged.planes.size(), whole.planes.size());
+    for (const Plane& plane : whole.planes)
+      EXPECT_EQ(bits_of(merged.find(plane.channel)->pixels), bits_of(plane.pixels))
+          << plane.channel;
+  }
+}
+
 }  // namespace
 }  // namespace dapple

@@ -1,5 +1,6 @@
 // Every option of every command that takes a value: without one, with a word or NaN in place of a
-// number, and with a word that is none of an option's choices. The options are those of the help.
+// number, with zeros before a number, and with a word that is none of an option's choices. The
+// options are those of the help.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -7,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "dapple/film.hpp"
 #include "support/programs/command_help.hpp"
 #include "support/programs/program_run.hpp"
 
@@ -148,6 +150,30 @@ TEST_F(OptionValues, OutOfRangeAreNamedAsTyped) {
     SCOPED_TRACE(arguments);
     expect_failure(dapple(std::string("render scene:cube -o o.exr ") + arguments), 2, text);
   }
+}
+
+TEST_F(OptionValues, OfWholeNumbersAreDecimalWithZerosBeforeThemToo) {
+  const program_test::Outcome run = dapple(
+      "render scene:cube?divisions=1 --seed 0010 --spp=0008 --width 0016 --height 00008 -q -o "
+      "out.exr");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Film film = read_exr(path("out.exr"));
+  EXPECT_EQ(film.metadata.seed, 10u);
+  EXPECT_EQ(film.metadata.samples, 8);
+  EXPECT_EQ(film.width, 16);
+  EXPECT_EQ(film.height, 8);
+  std::filesystem::remove(path("out.exr"));
+  for (const auto& [command, rest] : kCommands) {
+    for (const Option& option : options_in(dapple(command + " --help").out)) {
+      if (option.type != "INT" && option.type != "UINT") continue;
+      for (const char* value : {"0x10", "0X8"}) {
+        SCOPED_TRACE(command + " " + option.flag + " " + value);
+        expect_failure(dapple(command + " " + rest + " " + option.flag + " " + value), 2,
+                       option.flag + ": " + value + " is not a decimal number");
+      }
+    }
+  }
+  EXPECT_EQ(files_in_folder(), 0u);
 }
 
 }  // namespace

@@ -1,7 +1,11 @@
 // --resume-or-begin: goes on from a checkpoint that fits, and begins anew where it is missing,
-// damaged or of another scene; other failures stay failures.
+// damaged or of another scene; other failures stay failures, and so does a file that cannot be
+// read.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 
@@ -21,6 +25,21 @@ class ResumeOrBegin : public ProgramRun {
                   "' --width 16 --height 12 --spp 8 --report-bias 0 -o b.exr --checkpoint a.ckpt "
                   "--resume-or-begin a.ckpt " +
                   more);
+  }
+
+  /// Expects that a render from `checkpoint` fails in one line that names it, and leaves it there.
+  void expect_unreadable(const std::string& checkpoint, const std::string& more = "",
+                         const std::string& before = "") const {
+    const Outcome run = dapple(
+        "render 'scene:tree?leaves=500' --width 16 --height 12 --spp 8 -o c.exr "
+        "--resume-or-begin " +
+            checkpoint + " " + more,
+        before);
+    expect_failure(run, 1, "dapple: " + checkpoint + ": cannot be read: ");
+    EXPECT_TRUE(run.err.starts_with("dapple: ")) << run.err;
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+    EXPECT_FALSE(std::filesystem::exists(path("c.exr"))) << checkpoint;
+    EXPECT_FALSE(std::filesystem::exists(path(checkpoint.substr(0, 99) + ".unfit"))) << checkpoint;
   }
 };
 
@@ -78,6 +97,45 @@ TEST_F(ResumeOrBegin, OtherFailuresLeaveTheCheckpoint) {
   expect_failure(resumed("--device nothing"), 4, "nothing");
   expect_failure(resumed("--frames 1-2"), 2, "--frames");
   expect_failure(resumed("--resume a.ckpt"), 2, "--resume");
+  EXPECT_TRUE(bytes_of(path("a.ckpt")) == saved);
+}
+
+TEST_F(ResumeOrBegin, ACheckpointThatCannotBeReadIsNamedAndNothingBegins) {
+  std::filesystem::create_symlink("loop.ckpt", path("loop.ckpt"));
+  expect_unreadable("loop.ckpt");
+  std::filesystem::create_directory(path("folder.ckpt"));
+  expect_unreadable("folder.ckpt");
+  expect_unreadable(std::string(256, 'n'));  // a file's name has at most 255 characters
+}
+
+/// Shell code with which the program runs as a user that is not root, who may read everything.
+/// Empty: there is no such user here.
+std::string as_a_user() {
+  if (geteuid() != 0) return "env";
+  const std::string user = "setpriv --reuid=65534 --regid=65534 --clear-groups";
+  const std::string probe = user + " '" DAPPLE_PROGRAM "' --version >/dev/null 2>&1";
+  return std::system(probe.c_str()) == 0 ? user : "";
+}
+
+TEST_F(ResumeOrBegin, ACheckpointWithoutPermissionsIsNamedAndStays) {
+  const std::string user = as_a_user();
+  if (user.empty()) GTEST_SKIP() << "root is the only user";
+  using std::filesystem::perms;
+  ASSERT_EQ(resumed().code, 0);
+  const std::string saved = bytes_of(path("a.ckpt"));
+  std::filesystem::permissions(folder_, perms::all);
+  std::filesystem::create_directory(path("locked"));
+  std::filesystem::copy(path("a.ckpt"), path("locked/a.ckpt"));
+  std::filesystem::permissions(path("locked"), perms::none);
+  expect_unreadable("locked/a.ckpt", "", user);
+  std::filesystem::permissions(path("locked"), perms::owner_all);
+  std::filesystem::permissions(path("a.ckpt"), perms::none);
+  expect_unreadable("a.ckpt", "", user);
+  // The new checkpoint would replace it: it is written to, and cannot be read.
+  std::filesystem::permissions(path("a.ckpt"),
+                               perms::owner_write | perms::group_write | perms::others_write);
+  expect_unreadable("a.ckpt", "--checkpoint a.ckpt", user);
+  std::filesystem::permissions(path("a.ckpt"), perms::owner_all);
   EXPECT_TRUE(bytes_of(path("a.ckpt")) == saved);
 }
 

@@ -45,7 +45,8 @@ TEST(RenderProgress, DoesNotShowOneIfItIsStopped) {
   EXPECT_EQ(std::count(shown.begin(), shown.end(), 1.0), 0);
 }
 
-// A render that is to stop saves once, at its end, and not before that for a checkpoint that is due.
+// A render that is to stop saves once, at its end, and not before that for a checkpoint that is
+// due.
 TEST(RenderProgress, AsksWhetherToStopBeforeEachCheckpoint) {
   RenderOptions options = small_picture(0);
   options.width = options.height = 256;

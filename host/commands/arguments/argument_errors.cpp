@@ -35,6 +35,20 @@ std::string expected_values(const CLI::App& app, const std::string& flag, const 
   return "another value";
 }
 
+/// Whole numbers are decimal, also with zeros before them: scripts write 0008.
+void read_as_decimal(CLI::Option& option) {
+  option.transform([](std::string text) {
+    const std::size_t sign = text.starts_with('-') || text.starts_with('+') ? 1 : 0;
+    if (text.find_first_not_of("0123456789", sign) != std::string::npos) return text;
+    while (text.size() > sign + 1 && text[sign] == '0') text.erase(sign, 1);
+    return text;
+  });
+  option.check([](const std::string& text) {
+    return text.find_first_of("xX") != std::string::npos ? text + " is not a decimal number"
+                                                         : std::string();
+  });
+}
+
 bool takes_number(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   return type.starts_with("UINT") || type.starts_with("INT") || type.starts_with("FLOAT");
@@ -117,6 +131,8 @@ CLI::Validator of_values(const std::string& values) {
 void refuse_empty_values(CLI::App& command) {
   for (CLI::Option* option : command.get_options()) {
     if (option->get_expected_max() == 0) continue;  // a flag
+    const std::string type = option->get_type_name();
+    if (type.starts_with("UINT") || type.starts_with("INT")) read_as_decimal(*option);
     const std::string what = takes_number(*option) ? "number" : "value";
     option->check([what](const std::string& text) {
       return text.empty() ? fmt::format("needs a {}, its value is empty", what) : std::string();

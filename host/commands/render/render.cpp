@@ -33,7 +33,9 @@ namespace {
 
 /// The checkpoint that the render goes on from, if there is one.
 std::string resumed_file(const RenderArguments& a) {
-  return std::filesystem::exists(a.resume_or_begin) ? a.resume_or_begin : a.resume;
+  std::error_code unknown;  // reading it tells
+  const bool is_there = std::filesystem::exists(a.resume_or_begin, unknown) || unknown;
+  return is_there && !a.resume_or_begin.empty() ? a.resume_or_begin : a.resume;
 }
 
 RenderControl to_control(const RenderArguments& a, ProgressBar& progress) {
@@ -41,6 +43,7 @@ RenderControl to_control(const RenderArguments& a, ProgressBar& progress) {
   RenderControl control{progress.callback(), save_when_interrupted(), a.checkpoint,
                         parse_seconds("--checkpoint-every", a.checkpoint_every), resumed};
   control.skip_film = is_late;
+  control.warn = warn_of_checkpoint;
   if (!a.checkpoint.empty()) control.progress = end_early(a.checkpoint, resumed, control.progress);
   return control;
 }
@@ -56,6 +59,15 @@ std::string name_aside(const std::string& file) {
   for (int number = 2; std::filesystem::exists(std::filesystem::symlink_status(name)); ++number)
     name = fmt::format("{}.unfit_{}", file, number);
   return name;
+}
+
+/// What was written although the checkpoint was not.
+const char* written_text(const Frame& frame, bool interrupted) {
+  if (!interrupted)
+    return is_part_path(frame.output) ? "the part is written" : "the image is written";
+  return is_part_path(frame.output) ? "the render was interrupted, and no part is written"
+                                    : "the render was interrupted, and the image is written with "
+                                      "the samples that it has";
 }
 
 /// Says that the render begins anew, and moves a checkpoint aside that its own would replace.
@@ -299,7 +311,8 @@ class RenderRun {
     statistics.seconds.total = total.seconds();
     if (!frame.stats_json.empty()) write_statistics(statistics, frame.stats_json);
     if (!result.checkpoint_failure.empty())
-      throw Error(ErrorKind::failed, result.checkpoint_failure + "; the image is written");
+      throw Error(ErrorKind::failed, fmt::format("{}; {}", result.checkpoint_failure,
+                                                 written_text(frame, result.interrupted)));
     if (!a_.quiet) {
       notes_.print(statistics.notes);
       print_summary(statistics, frame, png_.exposure, result.interrupted);

@@ -29,8 +29,8 @@ void check_motion(const RenderArguments& a) {
   const double fps = frames_per_second(a);
   if (!(std::isfinite(fps) && fps > 0))
     throw Error(ErrorKind::usage, "--fps must be a number above 0");
-  if (a.fps && a.frames.empty() && a.shutter.empty() && !wants_motion(a))
-    throw Error(ErrorKind::usage, "--fps needs --frames, --shutter or --passes motion");
+  if (a.fps && a.frames.empty() && !a.frame && a.shutter.empty() && !wants_motion(a))
+    throw Error(ErrorKind::usage, "--fps needs --frame, --frames, --shutter or --passes motion");
   if (a.shutter.empty()) return check_animation(a);
   if (!a.frame && a.frames.empty())
     throw Error(ErrorKind::usage, "--shutter needs --frame or --frames: when it opens");
@@ -119,9 +119,14 @@ bool is_part_path(const std::string& path) { return path.ends_with(".dapple"); }
 double frames_per_second(const RenderArguments& a) { return a.fps.value_or(24); }
 
 int shutter_times(const RenderArguments& a) {
-  constexpr int kDefault = 8;
+  constexpr int kMost = 8, kFewest = 4;
   if (a.shutter.empty()) return 1;
-  return a.motion_samples.value_or(std::min(kDefault, a.spp.value_or(a.options.spp)));
+  if (a.motion_samples) return *a.motion_samples;
+  // As many samples for each moment, if that is possible.
+  const int spp = a.spp.value_or(a.options.spp);
+  for (int times = kMost; times >= kFewest; --times)
+    if (spp % times == 0) return times;
+  return std::min(kMost, spp);
 }
 
 double shutter_seconds(const RenderArguments& a, double seconds, int k) {

@@ -154,9 +154,11 @@ Checkpoint read_as(const std::string& name, const std::string& path, PartContent
   } catch (const Error& error) {
     const std::string text = error.what();
     const std::string prefix = path + ": ";
-    std::error_code ignored;
-    if (!std::filesystem::exists(path, ignored))
+    std::error_code unknown;
+    if (!std::filesystem::exists(path, unknown) && !unknown)
       throw Error(ErrorKind::input, name + ": there is no such file");
+    // The file may be as good as it was: who begins anew without it needs another reason.
+    if (text.starts_with(prefix + "cannot be read")) throw Error(ErrorKind::failed, text);
     refuse(name, (text.starts_with(prefix) ? text.substr(prefix.size()) : text) + next);
   } catch (const json::exception& error) {
     refuse(name, fmt::format("damaged: {}", error.what()));

@@ -98,11 +98,16 @@ struct Parts {
   Settings common;
 };
 
+/// In any order.
+bool agree(const Settings& a, const Settings& b) {
+  return !first_difference(a, b) && !first_difference(b, a);
+}
+
 /// Reads a part once more. Throws Error usage if the file is no longer what was described.
 Checkpoint read_again(const Part& part, const Settings& common, PartContents contents) {
   Checkpoint about = read_part(part.path, contents);
   if (about.pieces != part.pieces || about.picture.options.visits != part.visits ||
-      about.picture.options.beauty != part.beauty || common_settings(about) != common)
+      about.picture.options.beauty != part.beauty || !agree(common_settings(about), common))
     refuse(part.path + ": changed while it was merged");
   return about;
 }

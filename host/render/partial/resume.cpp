@@ -99,12 +99,14 @@ void write_checkpoints(TraceControl& tracing, const RenderControl& control, Chec
   };
   tracing.save = [&control, &result, stopped, about = std::move(about)](const TraceState& state) {
     const Stopwatch writing;
+    const bool failed_before = !result.checkpoint_failure.empty();
     result.checkpoint_failure.clear();
     try {
       write_checkpoint(control.checkpoint, about, state, Durable::no,
                        *stopped ? CompressionLevel::fastest : CompressionLevel::standard);
     } catch (const Error& error) {
       result.checkpoint_failure = error.what();
+      if (control.warn && !failed_before && !*stopped) control.warn(result.checkpoint_failure);
     }
     result.statistics.seconds.checkpoint += writing.seconds();
   };

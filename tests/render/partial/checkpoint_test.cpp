@@ -65,7 +65,6 @@ TEST_F(CheckpointFile, AFlippedBitAndAnotherLengthIsRefusedByName) {
   write_bytes(path("b.ckpt"), whole + "x");
   expect_refused(path("b.ckpt"));
   expect_refused(path("nosuch.ckpt"), ErrorKind::input);
-  expect_refused(folder_.string());
 }
 
 TEST_F(CheckpointFile, TheLargestSliceOfAGpuIsAccepted) {
@@ -104,6 +103,18 @@ TEST_F(CheckpointFile, StatesThatDoNotFitThePictureAreRefused) {
     change(state);
     const Error error = error_of([&] { check_state("--resume a.ckpt", state, {2, 4, 2}); });
     EXPECT_TRUE(contains(error.what(), "--resume a.ckpt: ")) << error.what();
+  }
+}
+
+// The message is not of --resume: who begins anew where a checkpoint does not fit must not, as the
+// file may be whole.
+TEST_F(CheckpointFile, OneThatCannotBeReadIsAnotherFailureThanADamagedOne) {
+  std::filesystem::create_symlink("loop.ckpt", path("loop.ckpt"));
+  for (const std::string& file :
+       {folder_.string(), path("loop.ckpt"), path(std::string(256, 'n'))}) {
+    const Error error = error_of([&] { read_checkpoint(file); });
+    EXPECT_EQ(error.kind(), ErrorKind::failed) << error.what();
+    EXPECT_TRUE(std::string(error.what()).starts_with(file + ": cannot be read: ")) << error.what();
   }
 }
 
