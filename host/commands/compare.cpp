@@ -42,12 +42,16 @@ void check(const CompareArguments& a) {
   check_outputs_spare(outputs, {a.a, a.b});
 }
 
-void require_layer(const LayerMatch& match, const std::string& layer) {
+/// A layer that the first file lacks is too large a difference where there is a limit.
+void require_layer(const LayerMatch& match, const std::string& layer, bool is_limited) {
   std::string names;
   for (const LayerPair& pair : match.pairs) {
     if (pair.name == layer) return;
     names += " " + pair.name;
   }
+  const auto& others = match.only_b;
+  if (is_limited && std::find(others.begin(), others.end(), layer) != others.end())
+    throw Error(ErrorKind::different, "--layer " + layer + ": the first file lacks it");
   throw Error(ErrorKind::usage, "--layer " + layer + ": no such layer in both; there are:" + names);
 }
 
@@ -57,7 +61,7 @@ LayerMatch choose_layers(const CompareArguments& arguments, const Film& a, const
     throw Error(ErrorKind::input, arguments.a + " and " + arguments.b + " have no layer in common");
   }
   if (arguments.layer.empty()) return match;
-  require_layer(match, arguments.layer);
+  require_layer(match, arguments.layer, arguments.max_rmse.has_value());
   return match_layers(a, b, arguments.layer);
 }
 

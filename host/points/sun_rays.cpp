@@ -113,8 +113,10 @@ void SunRays::sample(const V3f& point, const V3f& normal, std::size_t sets, std:
       while (sun + 1 < suns_.size() && sums[sun + 1] <= at) ++sun;
       const std::size_t set = (part + turn) % sets;
       Ray& ray = rays[first_ray + set];
-      const auto [u, v] = spread_pair(first_ray / sets, shift_u + double(set) / double(sets),
-                                      shift_v + double(set) * 0.6180339887498949);
+      // By parts of a turn and golden sections: together they fill the disk evenly, too.
+      const auto [u, v] =
+          spread_pair(first_ray / sets, shift_u + static_cast<double>(set) * 0.6180339887498949,
+                      shift_v + static_cast<double>(set) / static_cast<double>(sets));
       ray = point_ray(point, normal, direction_to_disk(suns_[sun].direction, u, v), 0,
                       hash_of(bits, turn));
     }

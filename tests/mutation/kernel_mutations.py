@@ -323,4 +323,14 @@ MUTATIONS = [
         "? load3(albedos[sample].color)",
         "? load3(albedos[0].color)",
         r"^Beauty\."),
+    Mutation(
+        "areas-without-a-unit", "kernels/occlusion/packet_node.clh",
+        "return bvh_scale((uchar)clamp(127 - 2 * (largest - 127), 1, 254));",
+        "return 1.0f + 0.0f * (float)largest;",
+        r"^Units\."),
+    Mutation(
+        "cosine-that-cancels-beside-an-edge", "kernels/lights/mesh_sample.clh",
+        "const float one_plus_cosine = 0.5f * dot(sum, sum);",
+        "const float one_plus_cosine = 1.0f + dot(a, b) + 0.0f * sum.x;",
+        r"^Light\."),
 ]

@@ -379,4 +379,24 @@ MUTATIONS = [
         "constexpr float kLeast = 0.2f;",
         "constexpr float kLeast = 0.0f;",
         r"^ValueSums\."),
+    Mutation(
+        "sky-starts-off-the-vertical", "host/points/measure_points.cpp",
+        "query.surfaces = normals_;",
+        "query.surfaces = up;",
+        r"^Undersides\."),
+    Mutation(
+        "rings-start-off-the-vertical", "host/points/ring_rays.cpp",
+        "rays[i] = point_ray(point, normal,",
+        "rays[i] = point_ray(point, V3f(0, 1, 0) + normal * 0.0f,",
+        r"^Undersides\."),
+    Mutation(
+        "each-pose-counts-once", "host/commands/bake/file_values.cpp",
+        "Sum(values_of(*use.baked)[use.source->first + i]) * use.weight;",
+        "Sum(values_of(*use.baked)[use.source->first + i]) * (weights / static_cast<double>(uses.size()));",
+        r"^BakePlacements\."),
+    Mutation(
+        "parts-of-a-mesh-stay-apart", "host/bake/mesh_borders.cpp",
+        "if (set.size() > 1) sets.push_back(std::move(set));",
+        "if (set.size() > 1000) sets.push_back(std::move(set));",
+        r"^BakePlacements\."),
 ]

@@ -292,4 +292,34 @@ MUTATIONS = [
         "std::int64_t{options.spp} * (time + 1) / times",
         "std::int64_t{options.spp} * time / times",
         r"^Shutter\."),
+    Mutation(
+        "meshopt-exponents-as-they-are", "host/scene/gltf/document/compressed_views.cpp",
+        "if (filter == \"EXPONENTIAL\")",
+        "if (filter == \"EXPONENTIALS\")",
+        r"^CompressedViews\."),
+    Mutation(
+        "webp-only-without-a-source", "host/scene/gltf/texture.cpp",
+        "if (const int webp = webp_image(given); webp >= 0) return webp;",
+        "if (const int webp = webp_image(given); webp >= 0 && given.source < 0) return webp;",
+        r"^Webp\."),
+    Mutation(
+        "three-lines-that-meet-are-joined", "host/scene/gltf/line_joints.cpp",
+        "if (end - first == 2 &&",
+        "if (end - first >= 2 &&",
+        r"^GltfLines\."),
+    Mutation(
+        "areas-of-boxes-without-a-unit", "host/bvh/opacity/node_opacity.cpp",
+        "return std::isnormal(most) ?",
+        "return most < 0 ?",
+        r"^Units\."),
+    Mutation(
+        "motion-by-whole-runs", "host/render/frame_match.cpp",
+        "if (count_of(runs) != count_of(next_runs)) {",
+        "if (count_of(runs) != count_of(next_runs) || runs.size() != next_runs.size()) {",
+        r"^Motion\."),
+    Mutation(
+        "dwaa-up-to-the-largest-half", "host/film/exr/exr_writer.cpp",
+        "lossy ? kLargestOfDwaa : kLargestHalf",
+        "lossy ? kLargestHalf : kLargestHalf",
+        r"^ExrFormat"),
 ]

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <iterator>
 
 #include "dapple/error.hpp"
@@ -12,7 +13,10 @@ namespace {
 
 /// Whether `path` ends in `format`, or in a format that dapple does not write.
 bool is_named_as(const std::string& path, const char* format) {
-  const auto ends = [&](const char* suffix) { return path.ends_with(suffix); };
+  std::string name = path;
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const auto ends = [&](const char* suffix) { return name.ends_with(suffix); };
   constexpr const char* kOthers[] = {".jpg", ".jpeg", ".tif", ".tiff", ".hdr", ".json"};
   return ends(format) || std::any_of(std::begin(kOthers), std::end(kOthers), ends);
 }

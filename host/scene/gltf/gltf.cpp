@@ -41,6 +41,14 @@ void warn_of_other_scenes(const tinygltf::Model& model, Scene& scene) {
                   element("scene", shown, model.scenes[shown].name))));
 }
 
+/// glTF says of no animation that it plays before others.
+void warn_of_other_animations(const SceneOptions& options, Scene& scene) {
+  if (scene.animations.size() < 2 || !options.animation.empty()) return;
+  scene.warnings.push_back(one_line(fmt::format(
+      "{}: of its {} animations only {} plays; --animation \"*\" plays all", scene.source,
+      scene.animations.size(), element("animation", 0, scene.animations.front().name))));
+}
+
 }  // namespace
 
 namespace gltf {
@@ -55,6 +63,7 @@ MovingGltf::MovingGltf(const std::string& path, const SceneOptions& options, boo
   warn_of_other_scenes(document_.model, timeless_);
   if (!has_any_lines(document_.model)) warn_of_no_lines(path, options, timeless_);
   timeless_.animations = list_animations(document_);
+  if (plays) warn_of_other_animations(options, timeless_);
   for (const auto& node : document_.model.nodes)
     timeless_.node_names.push_back(node.mesh >= 0 ? one_line(node.name) : "");
   // The needed materials and images do not depend on the pose.

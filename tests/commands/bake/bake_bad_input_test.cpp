@@ -78,7 +78,9 @@ TEST_F(BakeBadInput, AFullDiskLeavesTheFilesOfAnEarlierBakeAsTheyWere) {
   if (!has_namespaces()) GTEST_SKIP() << "no namespaces to mount in";
   write_mesh("in.glb", stack_of(40));
   std::filesystem::create_directory(path("disk"));
-  for (const char* name : {"out.gltf", "out.bin", "out_ao.png"})
+  const std::string old = R"({"buffers": [{"uri": "out.bin"}], "images": [{"uri": "out_ao.png"}]})";
+  write_bytes(path("old/out.gltf"), old);
+  for (const char* name : {"out.bin", "out_ao.png"})
     write_bytes(path(std::string("old/") + name), std::string("old ") + name);
   for (const auto& [size, first_failure] : {std::pair{"16k", "out.bin"}, {"20k", "out.gltf"}}) {
     const std::string mount = std::string("mount -t tmpfs -o size=") + size + " none disk";
@@ -91,7 +93,7 @@ TEST_F(BakeBadInput, AFullDiskLeavesTheFilesOfAnEarlierBakeAsTheyWere) {
     expect_failure(run, 1,
                    std::string("cannot write disk/") + first_failure + ": No space left on device");
     EXPECT_TRUE(bytes_of(path("found")) ==
-                "old out.binold out.gltfold out_ao.pngout.bin\nout.gltf\nout_ao.png\n")
+                "old out.bin" + old + "old out_ao.pngout.bin\nout.gltf\nout_ao.png\n")
         << size;
   }
   std::filesystem::remove_all(path("old"));
