@@ -24,6 +24,11 @@ constexpr float kMaxGrowth = 4;
 /// A round that would take fewer samples of an element in the mean does not pay: it visits all.
 constexpr double kMinRound = 0.005;
 
+/// A round takes as long as one of so many samples, at least (experiment 561): surfaces of a few
+/// elements begin with more samples of each, and take more of them in a round.
+constexpr double kLeastRound = 512;
+constexpr std::uint32_t kFirstOfFew = 8;
+
 /// Samples of a place before its first error is known, where each is in one of several placements:
 /// a few are often in like ones by chance, and then tell nothing of the others.
 constexpr double kSamplesInPlacements = 16;
@@ -66,6 +71,9 @@ bool SampleRounds::run(const RoundOptions& options) {
 
 // In several placements, all of them if they are few.
 std::uint32_t SampleRounds::first_samples(std::uint32_t least) const {
+  const auto of_round = static_cast<std::uint32_t>(
+      kLeastRound / static_cast<double>(std::max<std::size_t>(1, taken_.size())));
+  least = std::max(least, std::min(kFirstOfFew, of_round));
   if (placements() < 2) return least;
   double uses = 0;  // of places by elements
   for (std::size_t i = 0; i < surface_.size(); ++i) uses += place_count(surface_.places(i));
@@ -101,11 +109,24 @@ bool SampleRounds::refine(float target, std::uint32_t max_samples) {
       more += wanted[i] - taken_[i];
     }
     if (more <= kMinRound * static_cast<double>(taken_.size())) break;
+    if (more < kLeastRound) more = double_missing(wanted, max_samples);
     tracing_.progress.expect(more);
     if (!round(wanted)) return false;
   }
   count_values(target, max_samples);
   return true;
+}
+
+// Returns how many samples are missing then.
+double SampleRounds::double_missing(std::vector<std::uint32_t>& wanted,
+                                    std::uint32_t max_samples) const {
+  double more = 0;
+  for (std::size_t i = 0; i < taken_.size(); ++i) {
+    if (wanted[i] > taken_[i])
+      wanted[i] = std::max(wanted[i], std::min(2 * taken_[i], max_samples));
+    more += wanted[i] - taken_[i];
+  }
+  return more;
 }
 
 // Counts the values that have samples outside of closed geometry, and those with an error above

@@ -54,6 +54,7 @@ class SampleRounds {
   [[nodiscard]] std::uint32_t first_samples(std::uint32_t least) const;
   bool take(std::uint32_t samples, int rays);
   bool refine(float target, std::uint32_t max_samples);
+  double double_missing(std::vector<std::uint32_t>& wanted, std::uint32_t max_samples) const;
   void count_values(float target, std::uint32_t max_samples);
   bool round(const std::vector<std::uint32_t>& wanted);
   [[nodiscard]] std::uint32_t placements() const {
