@@ -151,7 +151,8 @@ void catch_interruptions() {
 }
 
 void warn_of_checkpoint(const std::string& reason) {
-  tell("\nnote: {}; the work goes on, and it is tried again\n", reason);
+  tell("{}note: {}; the work goes on, and it is tried again\n", isatty(STDERR_FILENO) ? "\n" : "",
+       reason);
 }
 
 Stop save_when_interrupted() {

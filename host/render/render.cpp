@@ -33,6 +33,7 @@
 #include "sampling/shard.hpp"
 #include "scene/check/scene_check.hpp"
 #include "scene/corner_normals.hpp"
+#include "scene/frame_merge.hpp"
 #include "scene/lights/default_lights.hpp"
 
 namespace dapple {
@@ -47,7 +48,7 @@ View prepare_scene(Scene& scene, const RenderOptions& options, std::vector<std::
   check_film_memory(view, options.light ? scene.lights.size() : 0, options);
   if (options.ground) add_ground(scene);
   if (options.cryptomattes.any() || options.motion) name_objects(scene);
-  merge_single_instances(scene);
+  merge_frame(scene);
   if (options.light && scene.lights.empty()) {
     scene.lights = daylight(view.camera);
     notes.push_back(default_light_note(options.ground));

@@ -14,6 +14,7 @@
 #include "scene/check/numeric_range.hpp"
 #include "scene/check/scene_check.hpp"
 #include "scene/check/triangle_cleanup.hpp"
+#include "scene/frame_merge.hpp"
 
 namespace dapple {
 namespace {
@@ -264,9 +265,8 @@ std::string reasons(const Scene& scene) {
   return text.empty() ? text : text + ")";
 }
 
-}  // namespace
-
-void merge_single_instances(Scene& scene) {
+/// Leaves a scene without instances if nothing is left.
+void merge(Scene& scene) {
   check_scene(scene);
   // Copies that are scaled to nothing for some frames count in all: a mesh that is merged in one
   // frame and not in the next would have no motion.
@@ -278,12 +278,24 @@ void merge_single_instances(Scene& scene) {
   merge_chosen(scene, merged);
   drop_unhittable_triangles(scene);
   drop_unused(scene);
-  if (moves && scene.instances.empty()) add_speck(scene);
+}
+
+}  // namespace
+
+void merge_single_instances(Scene& scene) {
+  merge(scene);
   if (scene.instances.empty()) {
     throw Error(ErrorKind::input,
                 fmt::format("{}: there is nothing to render: no triangle or strand is left{}",
                             source_name(scene), reasons(scene)));
   }
+  check_numeric_range(scene);
+}
+
+void merge_frame(Scene& scene) {
+  if (scene.animations.empty()) return merge_single_instances(scene);
+  merge(scene);
+  if (scene.instances.empty()) add_speck(scene);
   check_numeric_range(scene);
 }
 

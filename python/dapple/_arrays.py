@@ -145,7 +145,12 @@ def materials(
         distinct, which = _distinct(values)
         labels = [str(i) for i in range(len(distinct))]
     else:
+        if np.ma.is_masked(names):
+            raise UsageError("materials is masked; fill it, as with .filled()")
         array = np.asarray(names)
+        # Columns of tables hold names as objects.
+        if array.dtype.kind in "OT" and all(isinstance(name, str) for name in array.flat):
+            array = array.astype(str)
         if array.shape != (count,) or array.dtype.kind not in "Uiu":
             raise UsageError(
                 f"materials has the shape {shape_text(array.shape)} and the type {array.dtype}; it "

@@ -39,6 +39,11 @@ def _driver_of_pip() -> Path | None:
 
 def use_driver_of_pip() -> None:
     """Points OpenCL's loader at pip's driver, unless the system has one or the user names one."""
+    # A process that dapple's own started, by multiprocessing for example, has its parent's folder.
+    of_parent = Path(os.environ.get("OCL_ICD_VENDORS", "")) / "pip.icd"
+    if of_parent.parent.name.startswith("dapple-") and of_parent.exists():
+        ctypes.CDLL(of_parent.read_text(encoding="utf-8"))
+        return
     if any(name in os.environ for name in ("OCL_ICD_VENDORS", "OCL_ICD_FILENAMES")):
         return
     library = None if _system_has_driver() else _driver_of_pip()

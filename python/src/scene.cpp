@@ -133,7 +133,15 @@ void add_sky(Scene& scene, const std::string& kind, float irradiance, double rot
   if (!(sky.radiance.x <= kLargestRadiance))
     throw Error(ErrorKind::usage, "irradiance is too large: radiances may be up to 1e30");
   sky.rotation = static_cast<float>(std::remainder(rotation, 360.0) * 3.141592653589793 / 180);
-  scene.lights.push_back(sky);
+  // First, so that results under its name are its own, as those of dapple points --sky are.
+  const bool is_taken = std::any_of(scene.lights.begin(), scene.lights.end(),
+                                    [&](const Light& light) { return light.name == sky.name; });
+  if (is_taken)
+    scene.warnings.push_back(
+        "results called sky are of the sky that was added last; other lights "
+        "of that name have a number");
+  scene.lights.insert(scene.lights.begin(), sky);
+  for (Instance& instance : scene.instances) instance.light += instance.light >= 0 ? 1 : 0;
 }
 
 void bind_parts(nb::class_<SceneOnDevice>& bound) {

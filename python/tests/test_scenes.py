@@ -48,6 +48,32 @@ def test_lights_of_two_files_have_random_numbers_of_their_own(tmp_path: Path) ->
     assert lit[0].unoccluded[0, 0] != lit[1].unoccluded[0, 0]
 
 
+def test_materials_may_be_names_in_an_array_of_objects() -> None:
+    vertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
+    names = np.array(["leaf", "stem"], object)  # as columns of pandas are
+    scene = dapple.Scene.from_arrays(vertices, [[0, 1, 2], [0, 2, 1]], 1.0, names)
+    assert [m.name for m in scene.materials] == ["leaf", "stem"]
+    with pytest.raises(dapple.UsageError, match="materials is masked"):
+        dapple.Scene.from_arrays(
+            vertices, [[0, 1, 2], [0, 2, 1]], 1.0, np.ma.array([1, 2], mask=[0, 1])
+        )
+
+
+def test_the_sky_that_is_added_has_its_name() -> None:
+    scene = dapple.load("scene:demo")
+    scene.add_sky("uniform", 100)
+    columns = scene.measure([[0, 50, 0]], rays=64)
+    assert columns["sky_r"][0] == pytest.approx(100, rel=0.1)
+    assert any("called sky" in warning for warning in scene.warnings)
+
+
+def test_a_picture_equals_itself_alone() -> None:
+    scene = dapple.load("scene:cube")
+    first, second = (scene.render(width=8, height=8, spp=1) for _ in range(2))
+    assert first == first and first != second
+    assert {first: 1}[first] == 1 and second not in [first]
+
+
 def test_materials_of_arrays_are_called_as_asked_or_in_order_of_the_triangles() -> None:
     corners = [[-1, 1, -1], [1, 1, -1], [1, 1, 1], [-1, 1, 1]]
     faces = [[0, 1, 2], [0, 2, 3]]

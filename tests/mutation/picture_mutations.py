@@ -389,14 +389,4 @@ MUTATIONS = [
         "rays[i] = point_ray(point, normal,",
         "rays[i] = point_ray(point, V3f(0, 1, 0) + normal * 0.0f,",
         r"^Undersides\."),
-    Mutation(
-        "each-pose-counts-once", "host/commands/bake/file_values.cpp",
-        "Sum(values_of(*use.baked)[use.source->first + i]) * use.weight;",
-        "Sum(values_of(*use.baked)[use.source->first + i]) * (weights / static_cast<double>(uses.size()));",
-        r"^BakePlacements\."),
-    Mutation(
-        "parts-of-a-mesh-stay-apart", "host/bake/mesh_borders.cpp",
-        "if (set.size() > 1) sets.push_back(std::move(set));",
-        "if (set.size() > 1000) sets.push_back(std::move(set));",
-        r"^BakePlacements\."),
 ]

@@ -299,8 +299,8 @@ MUTATIONS = [
         r"^CompressedViews\."),
     Mutation(
         "webp-only-without-a-source", "host/scene/gltf/texture.cpp",
-        "if (const int webp = webp_image(given); webp >= 0) return webp;",
-        "if (const int webp = webp_image(given); webp >= 0 && given.source < 0) return webp;",
+        "if (webp >= 0 && (given.source < 0 || is_there(document, webp))) return webp;",
+        "if (webp >= 0 && given.source < 0) return webp;",
         r"^Webp\."),
     Mutation(
         "three-lines-that-meet-are-joined", "host/scene/gltf/line_joints.cpp",
@@ -322,4 +322,14 @@ MUTATIONS = [
         "lossy ? kLargestOfDwaa : kLargestHalf",
         "lossy ? kLargestHalf : kLargestHalf",
         r"^ExrFormat"),
+    Mutation(
+        "each-pose-counts-once", "host/commands/bake/file_values.cpp",
+        "Sum(values_of(*use.baked)[use.source->first + i]) * use.weight;",
+        "Sum(values_of(*use.baked)[use.source->first + i]) * (weights / static_cast<double>(uses.size()));",
+        r"^BakePlacements\."),
+    Mutation(
+        "parts-of-a-mesh-stay-apart", "host/bake/mesh_borders.cpp",
+        "if (set.size() > 1) sets.push_back(std::move(set));",
+        "if (set.size() > 1000) sets.push_back(std::move(set));",
+        r"^BakePlacements\."),
 ]

@@ -76,6 +76,8 @@ TEST(VisibilityChanges, AFrameInWhichNothingIsLeftIsEmpty) {
   for (const float a : empty.film.find("A")->pixels) EXPECT_EQ(a, 0);
   const auto& notes = empty.statistics.notes;
   EXPECT_NE(std::find(notes.begin(), notes.end(), "nothing is left in this frame"), notes.end());
+  Scene rest = moving_sphere(false);  // of points and bakes, which have no frames
+  EXPECT_THROW(merge_single_instances(rest), Error);
   Scene still = moving_sphere(false);
   still.animations.clear();
   EXPECT_THROW(render(std::move(still), small_picture()), Error);

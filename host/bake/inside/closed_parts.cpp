@@ -10,8 +10,8 @@
 #include "bake/samples/surface_samples.hpp"
 #include "bake/vertex_groups.hpp"
 #include "bvh/opacity/closed_surface.hpp"
-#include "scene/disjoint_sets.hpp"
 #include "bvh/opacity/triangle_opacity.hpp"
+#include "scene/disjoint_sets.hpp"
 
 namespace dapple {
 namespace {

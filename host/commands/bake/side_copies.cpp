@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -44,22 +46,39 @@ fs::path nearest_parent(const fs::path& path) {
   return parent;
 }
 
-/// Files that a .gltf names as buffers and images: an earlier bake's output may be there, with its
-/// copies. None if the file is not there, or is something else.
+/// The JSON of a .gltf or .glb file; not an object if the file is not there, or is something else.
+nlohmann::json document_of(const fs::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  std::array<char, 20> head{};  // of a GLB: magic, version, length; length and type of the JSON
+  stream.read(head.data(), head.size());
+  if (!stream || std::string_view(head.data(), 4) != "glTF") {
+    stream.clear();
+    stream.seekg(0);
+    return nlohmann::json::parse(stream, nullptr, false);
+  }
+  std::uint32_t length = 0;
+  std::memcpy(&length, &head[12], sizeof length);
+  constexpr std::uint32_t kMost = 1u << 28;
+  std::string text(std::min(length, kMost), ' ');
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  return nlohmann::json::parse(text, nullptr, false);
+}
+
+void insert_files(const nlohmann::json& element, const fs::path& folder,
+                  std::set<fs::path>& files) {
+  for (const auto& [key, value] : element.items()) {
+    if (key == "extras") continue;
+    if ((key == "uri" || key.ends_with("Uri")) && value.is_string())
+      files.insert((folder / gltf::percent_decode(value.get<std::string>())).lexically_normal());
+    if (value.is_structured()) insert_files(value, folder, files);
+  }
+}
+
+/// Files that a glTF file names: an earlier bake's output may be there, with its copies.
 std::set<fs::path> files_of(const fs::path& output) {
   std::set<fs::path> files;
-  std::ifstream stream(output, std::ios::binary);
-  const nlohmann::json document = nlohmann::json::parse(stream, nullptr, false);
-  if (!document.is_object()) return files;
-  for (const char* array : {"buffers", "images"}) {
-    const auto found = document.find(array);
-    if (found == document.end() || !found->is_array()) continue;
-    for (const nlohmann::json& element : *found) {
-      if (!element.is_object() || !element.contains("uri") || !element["uri"].is_string()) continue;
-      const std::string name = gltf::percent_decode(element["uri"].get<std::string>());
-      files.insert((output.parent_path() / name).lexically_normal());
-    }
-  }
+  const nlohmann::json document = document_of(output);
+  if (document.is_object()) insert_files(document, output.parent_path(), files);
   return files;
 }
 
@@ -81,8 +100,9 @@ void check_side_copies(const std::string& output,
   const auto refuse = [&](const std::string& from, const std::string& why) {
     throw Error(ErrorKind::usage,
                 fmt::format("--output {}: {} is copied beside it, but {}; write to another folder, "
-                            "or a .glb, which embeds all, or remove what is there",
-                            output, from, why));
+                            "{}or remove what is there",
+                            output, from, why,
+                            output.ends_with(".glb") ? "" : "or a .glb, which embeds all, "));
   };
   const std::set<fs::path> earlier = copies.empty() ? std::set<fs::path>{} : files_of(output);
   for (const auto& [from, to] : copies) {
@@ -101,11 +121,10 @@ void check_side_copies(const std::string& output,
 }
 
 void check_new_sides(const std::string& output, const std::vector<std::string>& paths) {
-  if (paths.empty()) return;
-  const std::set<fs::path> earlier = files_of(output);
+  std::error_code ignored;
+  if (fs::exists(output, ignored)) return;  // they are those of an earlier output
   for (const std::string& path : paths) {
-    std::error_code ignored;
-    if (fs::exists(path, ignored) && !earlier.contains(fs::path(path).lexically_normal()))
+    if (fs::exists(path, ignored))
       throw Error(ErrorKind::usage,
                   fmt::format("--output {}: {} is written beside it, but another file of that name "
                               "is there; write to another folder, or a .glb, which embeds all, or "

@@ -187,7 +187,7 @@ void add_motion_options(CLI::App& app, RenderArguments& a) {
       "frame's time, as in --shutter=-0.25,0.25. Needs --frame or --frames");
   app.add_option("--motion-samples", a.motion_samples,
                  "Number of times at which the shutter is sampled; --spp is divided among them. "
-                 "Default: 8, at most --spp")
+                 "Default: the most from 4 to 8 that divide --spp, else 8, at most --spp")
       ->check(of_values("1..1024"))
       ->needs(&shutter);
   app.add_option("--animation", a.scene_options.animation,

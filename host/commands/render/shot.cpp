@@ -11,6 +11,7 @@
 #include "commands/arguments/shared_options.hpp"
 #include "dapple/error.hpp"
 #include "film/opacity_settings.hpp"
+#include "scene/check/invertible.hpp"
 #include "scene/ground.hpp"
 #include "scene/lights/default_lights.hpp"
 
@@ -28,10 +29,17 @@ std::string camera_options(const Camera& camera) {
   const V3f from = camera.to_world.translation();
   V3f forward;
   camera.to_world.multDirMatrix(V3f(0, 0, -1), forward);
-  const V3f at = from + forward;
-  return fmt::format("--look-from {:.6g},{:.6g},{:.6g} --look-at {:.6g},{:.6g},{:.6g} --fov {:.6g}",
+  // As far away as the origin is: coordinates have few digits there.
+  const V3f at = from + forward * std::max(1.0f, from.length());
+  return fmt::format("--look-from {:.9g},{:.9g},{:.9g} --look-at {:.9g},{:.9g},{:.9g} --fov {:.9g}",
                      from.x, from.y, from.z, at.x, at.y, at.z,
                      camera.fov_y * 180 / std::numbers::pi_v<float>);
+}
+
+/// Whether everything is scaled to nothing.
+bool is_empty(const Scene& scene) {
+  return std::none_of(scene.instances.begin(), scene.instances.end(),
+                      [](const Instance& instance) { return is_invertible(instance.to_world); });
 }
 
 /// Colours are read only where they are shown.
@@ -68,14 +76,24 @@ Scene Shot::frame(std::optional<double> seconds) {
   if (!moving_) return scene;
   // Before the ground is added, as in a still: its material is not the scene's.
   for (const auto& [material, value] : options_.opacity) override_opacity(scene, material, value);
-  if (!defaults_) defaults_ = choose_defaults(scene);
+  if (!defaults_) defaults_ = choose_defaults(scene, is_empty(scene) ? at_its_end(scene) : scene);
   add_defaults(scene);
   return scene;
 }
 
-Shot::Defaults Shot::choose_defaults(const Scene& first) const {
+// What grows from nothing is seen best when it is grown.
+Scene Shot::at_its_end(const Scene& first) const {
+  double seconds = 0;
+  for (const Animation& animation : first.animations)
+    seconds = std::max(seconds, animation.seconds);
+  Scene scene = moving_->at(seconds);
+  scene.cameras = first.cameras;
+  return scene;
+}
+
+Shot::Defaults Shot::choose_defaults(const Scene& first, const Scene& shown) const {
   Defaults chosen;
-  const Camera camera = choose_view(first, options_, chosen.notes).camera;
+  const Camera camera = choose_view(shown, options_, chosen.notes).camera;
   if (!options_.look && first.cameras.empty()) {
     chosen.camera = camera;
     if (!arguments_.frames.empty())
@@ -86,7 +104,7 @@ Shot::Defaults Shot::choose_defaults(const Scene& first) const {
   if (!options_.look) chosen.camera_name = camera.name;
   chosen.focus_distance = camera.focus_distance;
   if (options_.light && first.lights.empty()) chosen.lights = daylight(camera);
-  if (options_.ground) chosen.ground_under = bounds_to_stand_on(first);
+  if (options_.ground) chosen.ground_under = bounds_to_stand_on(shown);
   return chosen;
 }
 

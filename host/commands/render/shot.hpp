@@ -36,7 +36,10 @@ class Shot {
     std::vector<std::string> notes;
   };
 
-  [[nodiscard]] Defaults choose_defaults(const Scene& first) const;
+  /// The scene after all animations, with the first frame's cameras.
+  [[nodiscard]] Scene at_its_end(const Scene& first) const;
+  /// `shown`: what the camera is to show, and the ground to be under.
+  [[nodiscard]] Defaults choose_defaults(const Scene& first, const Scene& shown) const;
   void keep_camera(Scene& scene) const;
   void add_defaults(Scene& scene) const;
 

@@ -2,6 +2,7 @@
 #include "scene/gltf/texture.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <utility>
 
 #include "dapple/error.hpp"
@@ -32,9 +33,18 @@ std::string image_name(const Document& document, int image) {
   return fmt::format("image_{}", image);
 }
 
+/// Whether the bytes of an image are in the scene, or in a file that exists.
+bool is_there(const Document& document, int image) {
+  const ImageSource& source = document.images[static_cast<std::size_t>(image)];
+  std::error_code unknown;
+  return source.buffer_view >= 0 || is_data_uri(source.uri) ||
+         std::filesystem::exists(document.base.folder / percent_decode(source.uri), unknown);
+}
+
 int image_of(const Document& document, int texture, const std::string& user) {
   const auto& given = document.model.textures[static_cast<std::size_t>(texture)];
-  if (const int webp = webp_image(given); webp >= 0) return webp;
+  const int webp = webp_image(given);
+  if (webp >= 0 && (given.source < 0 || is_there(document, webp))) return webp;
   if (given.source >= 0) return given.source;
   for (const char* extension : kOtherFormats) {
     if (!given.extensions.contains(extension)) continue;

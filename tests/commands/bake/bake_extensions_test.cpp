@@ -93,6 +93,21 @@ TEST_F(BakeExtensions, VariantsNameTheCopiesOfMaterialsThatOtherMeshesUse) {
 }
 
 // JSON makes no difference between 1.0 and 1.
+// Else the bake would take the morph target's numbers for unused ones.
+TEST_F(BakeExtensions, MorphTargetsMayWriteTheirAccessorsWithAPoint) {
+  GltfBuilder builder = rich_triangle();
+  const int offsets =
+      builder.add_accessor(std::vector<float>{0, 1, 0, 0, 2, 0, 0, 3, 0}, test::kFloat, "VEC3");
+  json& primitive = builder.doc["meshes"][0]["primitives"][0];
+  primitive["attributes"]["COLOR_0"] = offsets;
+  primitive["targets"] = {{{"POSITION", static_cast<double>(offsets)}}};
+  write("in.glb", builder.glb());
+  const json after = baked("--blend replace --rays 8");
+  const test::GltfData file(path("out.glb"));
+  EXPECT_EQ(file.floats(after["meshes"][0]["primitives"][0]["targets"][0]["POSITION"]),
+            (std::vector<float>{0, 1, 0, 0, 2, 0, 0, 3, 0}));
+}
+
 TEST_F(BakeExtensions, VariantsMayWriteTheirMaterialWithAPoint) {
   GltfBuilder builder = triangle_with_variants();
   json& mappings = builder.doc["meshes"][0]["primitives"][0]["extensions"][kVariants]["mappings"];

@@ -79,6 +79,44 @@ GltfBuilder triangle_with_sounds() {
   return builder;
 }
 
+// A texture, then vertices: each output names other files than the one before.
+TEST_F(BakeSideFiles, OfEarlierBakesOfAnotherKindAreInNoBakesWay) {
+  write_tree(rich_triangle());
+  for (const char* to :
+       {"", "--to texture --size 16", "--to texture --size 16", "", "--channel _AO"})
+    EXPECT_EQ(dapple(std::string("bake in/tree.gltf -o out/tree.gltf --rays 8 -q ") + to).code, 0)
+        << to;
+}
+
+TEST_F(BakeSideFiles, ThatExtensionsNameOutsideOfTheFolderAreLeftAlone) {
+  for (const char* uri : {"../wind.mp3", "/schemas/a.json"}) {
+    GltfBuilder builder = rich_triangle();
+    builder.doc["extensions"]["ACME_wind"]["uri"] = uri;
+    write_tree(builder);
+    write_bytes(path("wind.mp3"), "wind");
+    EXPECT_EQ(dapple("bake in/tree.gltf -o out/tree.glb --rays 8 -q").code, 0) << uri;
+    EXPECT_EQ(written(), std::set<std::string>{"tree.glb"});
+  }
+}
+
+TEST_F(BakeSideFiles, ThatExtensionsNameAreReplacedByThoseOfTheNextBake) {
+  GltfBuilder builder = rich_triangle();
+  builder.doc["extensions"]["ACME_wind"]["schemaUri"] = "schema.json";
+  write_tree(builder);
+  for (const char* schema : {"1", "2"}) {
+    write_bytes(path("in/schema.json"), schema);
+    for (const char* output : {"out/a.glb", "out/b.gltf"}) {
+      // Each in a folder of its own.
+      const std::string folder = std::string(output) + ".d/";
+      fs::create_directories(path(folder));
+      const Outcome run = dapple("bake in/tree.gltf -o " + folder +
+                                 fs::path(output).filename().string() + " --rays 8 -q");
+      EXPECT_EQ(run.code, 0) << run.err;
+      EXPECT_EQ(bytes_of(path(folder + "schema.json")), schema);
+    }
+  }
+}
+
 TEST_F(BakeSideFiles, ThatExtensionsNameAreCopiedAndThoseOfExtrasAreNot) {
   write_tree(triangle_with_sounds());
   const std::set<std::string> named = {"wind.mp3", "sounds/far rain.mp3", "schema.json"};

@@ -190,8 +190,18 @@ TEST(CompressedViews, ThatCannotBeAreNamed) {
 
 TEST(CompressedViews, ABufferThatNothingCouldFillTakesNoMemory) {
   GltfBuilder builder = compressed(one_triangle());
-  builder.doc["buffers"][1]["byteLength"] = std::uint64_t{1} << 40;
-  expect_says(error_of(builder), "buffer 1 has 1,099,511,627,776 bytes without their data");
+  builder.doc["buffers"][1]["byteLength"] = std::uint64_t{1} << 31;
+  expect_says(error_of(builder), "buffer 1 has 2,147,483,648 bytes without their data");
+}
+
+// Each of them alone would be as large as its data may become.
+TEST(CompressedViews, ManyBuffersThatNothingCouldFillTakeNoMemory) {
+  GltfBuilder builder = compressed(one_triangle());
+  for (int i = 0; i < 1000; ++i) builder.doc["buffers"].push_back(builder.doc["buffers"][1]);
+  const std::size_t each = 60 * builder.glb().size();
+  for (std::size_t i = 1; i < builder.doc["buffers"].size(); ++i)
+    builder.doc["buffers"][i]["byteLength"] = each;
+  expect_says(error_of(builder), "buffer 2 has");
 }
 
 TEST(CompressedViews, OfTheLaterExtensionHaveNoBytes) {
@@ -200,6 +210,8 @@ TEST(CompressedViews, OfTheLaterExtensionHaveNoBytes) {
   extensions = {{"KHR_meshopt_compression", {{"fallback", true}}}};
   builder.doc["extensionsRequired"] = {"KHR_meshopt_compression"};
   expect_says(error_of(builder), "requires the extension KHR_meshopt_compression");
+  builder.doc.erase("extensionsRequired");
+  expect_says(error_of(builder), "buffer 1: holds only KHR_meshopt_compression data");
 }
 
 }  // namespace

@@ -88,7 +88,8 @@ GltfBuilder with_both(const Bytes& png_alphas, const Bytes& webp) {
       builder.add("images", {{"bufferView", builder.add_view(png::with_alpha(2, 1, png_alphas))},
                              {"mimeType", "image/png"}});
   const int other =
-      builder.add("images", {{"bufferView", builder.add_view(webp)}, {"mimeType", "image/webp"}});
+      builder.add("images", {{"bufferView", builder.add_view(webp.empty() ? Bytes{0} : webp)},
+                             {"mimeType", "image/webp"}});
   builder.add("textures",
               {{"source", source}, {"extensions", {{"EXT_texture_webp", {{"source", other}}}}}});
   builder.doc["extensionsUsed"] = {"EXT_texture_webp"};
@@ -104,6 +105,14 @@ TEST(Webp, TheExtensionStandsInForTheSource) {
   EXPECT_EQ(builder.load().textures.at(0).alpha, (Bytes{40, 90}));
   builder.doc["textures"][0]["extensions"]["EXT_texture_webp"]["source"] = 8;
   expect_says(error_of(builder), "texture 0 names image 8, but there are 2");
+}
+
+TEST(Webp, WithoutItsFileTheSourceIsRead) {
+  GltfBuilder builder = with_both({10, 20}, {});
+  builder.doc["images"][1] = {{"uri", "gone.webp"}};
+  EXPECT_EQ(builder.load().textures.at(0).alpha, (Bytes{10, 20}));
+  builder.doc["textures"][0]["extensions"]["EXT_texture_webp"] = json::object();
+  EXPECT_EQ(builder.load().textures.at(0).alpha, (Bytes{10, 20}));
 }
 
 }  // namespace

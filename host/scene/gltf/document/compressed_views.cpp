@@ -87,11 +87,15 @@ void decode_view(const Document& document, const Json& json, const std::string& 
          extension::kMeshopt);
 }
 
-Bytes empty_buffer(Document& document, std::size_t index, std::uint64_t length) {
-  if (length > kMaxRatio * document.bytes)
-    fail(document.file, "buffer {} has {} bytes without their data, the scene {}", index,
-         grouped(length), grouped(document.bytes));
-  return Bytes(length);
+/// Refuses more bytes than the scene's could be decompressed to, before they take memory.
+void count_fallbacks(Document& document, const FallbackBuffers& fallbacks) {
+  const std::uint64_t read = document.bytes;
+  for (const auto& [index, length] : fallbacks) {
+    count_scene_bytes(document, length, fmt::format("{}: buffer {}", document.file, index));
+    if (document.bytes - read > kMaxRatio * read)
+      fail(document.file, "buffer {} has {} bytes without their data, the scene {}", index,
+           grouped(length), grouped(read));
+  }
 }
 
 }  // namespace
@@ -103,16 +107,15 @@ bool is_fallback_buffer(const Json& buffer) {
 
 void decode_compressed_views(Document& document, const Json& views,
                              const FallbackBuffers& fallbacks) {
+  count_fallbacks(document, fallbacks);
   std::map<std::size_t, Bytes> filled;
-  for (const auto& [index, length] : fallbacks)
-    filled.emplace(index, empty_buffer(document, index, length));
+  for (const auto& [index, length] : fallbacks) filled.emplace(index, Bytes(length));
   for (std::size_t i = 0; i < views.size(); ++i) {
     const auto found = filled.find(views[i]["buffer"].get<std::size_t>());
     if (found != filled.end())
       decode_view(document, views[i], fmt::format("bufferView {}", i), found->second);
   }
   for (auto& [index, bytes] : filled) {
-    count_scene_bytes(document, bytes.size(), fmt::format("{}: buffer {}", document.file, index));
     document.storage.push_back(std::move(bytes));
     document.buffers[index] = document.storage.back();
   }

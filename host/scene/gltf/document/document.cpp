@@ -112,6 +112,8 @@ FallbackBuffers load_buffers(Document& document, const Json& buffers,
       document.buffers.emplace_back();
       continue;
     }
+    if (!has_bytes && buffer.value("extensions", Json()).contains("KHR_meshopt_compression"))
+      fail(what, "holds only KHR_meshopt_compression data; compress with EXT_meshopt_compression");
     if (!has_bytes) fail(what, "has no uri, and the file has no binary chunk for it");
     const auto bytes =
         has_uri ? reader.read(buffer["uri"].get_ref<const std::string&>(), length, what) : *binary;
@@ -232,7 +234,9 @@ std::span<const std::uint8_t> view_bytes(const Document& document, int buffer_vi
 
 int webp_image(const tinygltf::Texture& texture) {
   const auto webp = texture.extensions.find(extension::kWebp);
-  return webp == texture.extensions.end() ? -1 : webp->second.Get("source").GetNumberAsInt();
+  return webp == texture.extensions.end() || !webp->second.Has("source")
+             ? -1
+             : webp->second.Get("source").GetNumberAsInt();
 }
 
 Document load_document(const std::string& path, bool allow_outside) {

@@ -110,7 +110,7 @@ constexpr int kWraps[] = {33071, 33648, 10497};
 constexpr Rule kSampler[] = {code("magFilter", kMagFilters), code("minFilter", kMinFilters),
                              code("wrapS", kWraps), code("wrapT", kWraps)};
 
-constexpr Rule kWebp[] = {required({"source", Kind::index})};
+constexpr Rule kWebp[] = {{"source", Kind::index}};
 constexpr Rule kTextureExtensions[] = {object(extension::kWebp, kWebp)};
 constexpr Rule kTexture[] = {
     {"sampler", Kind::index}, {"source", Kind::index}, object("extensions", kTextureExtensions)};

@@ -63,6 +63,15 @@ Bytes decode_base64(std::string_view text, const std::string& what) {
   return bytes;
 }
 
+/// Names of parameters have no case (RFC 2045).
+bool has_base64(std::string_view head) {
+  constexpr std::string_view kEnd = ";base64";
+  return head.size() >= kEnd.size() &&
+         std::equal(kEnd.begin(), kEnd.end(), head.end() - kEnd.size(), [](char a, char b) {
+           return a == std::tolower(static_cast<unsigned char>(b));
+         });
+}
+
 /// Linux's limits in bytes: no file can have a longer name or path.
 constexpr std::size_t kMaxNameLength = 255;
 constexpr std::size_t kMaxPathLength = 4095;
@@ -135,19 +144,6 @@ std::string percent_encode(std::string_view name) {
   }
   return text;
 }
-
-namespace {
-
-/// Names of parameters have no case (RFC 2045).
-bool has_base64(std::string_view head) {
-  constexpr std::string_view kEnd = ";base64";
-  return head.size() >= kEnd.size() &&
-         std::equal(kEnd.begin(), kEnd.end(), head.end() - kEnd.size(), [](char a, char b) {
-           return a == std::tolower(static_cast<unsigned char>(b));
-         });
-}
-
-}  // namespace
 
 Bytes decode_data_uri(std::string_view uri, const std::string& what) {
   const std::size_t comma = uri.find(',');

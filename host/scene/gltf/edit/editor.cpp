@@ -27,17 +27,29 @@ void append(std::string& bytes, const Range& range) {
   bytes.append(reinterpret_cast<const char*>(range.data()), range.size());
 }
 
-/// Relative paths that extensions name, such as sounds and schemas: members `uri` and `schemaUri`.
-void append_extension_uris(const Json& element, bool in_extensions,
+/// Whether a path of an extension leads to a file of the scene's folder. dapple reads none of them.
+bool is_inside(const UriBase& base, const std::string& uri) {
+  if (uri.empty() || has_scheme(uri) || percent_decode(uri).find("..") != std::string::npos)
+    return false;
+  try {
+    resolve_uri({base.folder, false}, uri, uri);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+/// Files in the scene's folder that extensions name, such as sounds and schemas: members `uri` and
+/// `schemaUri`.
+void append_extension_uris(const Json& element, bool in_extensions, const UriBase& base,
                            std::vector<std::string>& uris) {
   for (const auto& [key, value] : element.items()) {
     if (key == "extras") continue;
     const bool names_file = in_extensions && (key == "uri" || key.ends_with("Uri"));
-    if (names_file && value.is_string() && !value.get_ref<const std::string&>().empty() &&
-        !has_scheme(value.get_ref<const std::string&>()))
+    if (names_file && value.is_string() && is_inside(base, value.get<std::string>()))
       uris.push_back(value.get<std::string>());
     if (value.is_structured())
-      append_extension_uris(value, in_extensions || key == "extensions", uris);
+      append_extension_uris(value, in_extensions || key == "extensions", base, uris);
   }
 }
 
@@ -159,11 +171,15 @@ void Editor::start_from_binary() {
 // All buffers become the GLB's own, which has the first one's name and extras. So do those that
 // compressed views fill: what these hold stays decompressed.
 void Editor::embed_buffers() {
+  std::set<std::size_t> used;  // without those of which only compressed data were used
+  for (const Json& view : json_.value("bufferViews", Json::array()))
+    used.insert(view["buffer"].get<std::size_t>());
   std::vector<std::size_t> begin;
-  for (const auto& buffer : content().document.buffers) {
+  const auto& buffers = content().document.buffers;
+  for (std::size_t i = 0; i < buffers.size(); ++i) {
     align(bytes_, 8);
     begin.push_back(bytes_.size());
-    append(bytes_, buffer);
+    if (used.contains(i)) append(bytes_, buffers[i]);
   }
   if (json_.contains("bufferViews")) {
     for (Json& view : json_["bufferViews"]) {
@@ -216,7 +232,7 @@ std::vector<std::pair<std::string, std::string>> Editor::side_copies() const {
   for (const char* array : {"buffers", "images"})
     for (const Json& entry : content().json.value(array, Json::array()))
       if (!is_glb_out() && entry.contains("uri")) uris.push_back(entry["uri"].get<std::string>());
-  append_extension_uris(content().json, false, uris);
+  append_extension_uris(content().json, false, content().document.base, uris);
   const fs::path folder = fs::path(out_).parent_path();
   std::vector<std::pair<std::string, std::string>> files;
   for (const std::string& uri : uris) {

@@ -22,23 +22,38 @@ std::string lower_case(std::string text) {
   return text;
 }
 
+/// A number without a fraction that is written with one.
+bool is_whole(const Json& number) {
+  if (!number.is_number_float()) return false;
+  const double value = number.get<double>();
+  return value >= 0 && value < 4294967296.0 && value == std::floor(value);
+}
+
+void write_whole(Json& number) {
+  if (is_whole(number)) number = number.get<std::uint64_t>();
+}
+
+/// Of a list of indices, or of objects of indices, as morph targets are.
+void write_whole_members(Json& list) {
+  for (Json& member : list) {
+    write_whole(member);
+    if (member.is_object())
+      for (Json& index : member) write_whole(index);
+  }
+}
+
 /// Indices that are written as 1.0 become 1: JSON makes no difference, edits of the file do.
 void write_whole_indices(Json& element) {
   static const std::set<std::string, std::less<>> kKeys = {
-      "accessor", "buffer", "bufferView", "camera",   "index",     "indices",
-      "input",    "light",  "material",   "mesh",     "node",      "output",
-      "sampler",  "skin",   "source",     "texCoord", "attributes"};
+      "buffer",   "bufferView", "camera", "index",   "indices", "input",   "inverseBindMatrices",
+      "light",    "material",   "mesh",   "node",    "output",  "sampler", "scene",
+      "skeleton", "skin",       "source", "texCoord"};
+  static const std::set<std::string, std::less<>> kLists = {"attributes", "children", "joints",
+                                                            "nodes", "targets"};
   for (auto& [key, value] : element.items()) {
     if (key == "extras") continue;
-    const auto is_whole = [](const Json& number) {
-      return number.is_number_float() && number.get<double>() >= 0 &&
-             number.get<double>() < 4294967296.0 &&
-             number.get<double>() == std::floor(number.get<double>());
-    };
-    if (kKeys.contains(key) && is_whole(value)) value = value.get<std::uint64_t>();
-    if (key == "attributes" && value.is_object())
-      for (Json& index : value)
-        if (is_whole(index)) index = index.get<std::uint64_t>();
+    if (kKeys.contains(key)) write_whole(value);
+    if (kLists.contains(key) && value.is_structured()) write_whole_members(value);
     if (value.is_structured()) write_whole_indices(value);
   }
 }
