@@ -52,7 +52,7 @@ def test_materials_may_be_names_in_an_array_of_objects() -> None:
     vertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
     names = np.array(["leaf", "stem"], object)  # as columns of pandas are
     scene = dapple.Scene.from_arrays(vertices, [[0, 1, 2], [0, 2, 1]], 1.0, names)
-    assert [m.name for m in scene.materials] == ["leaf", "stem"]
+    assert scene.materials == ["leaf", "stem"]
     with pytest.raises(dapple.UsageError, match="materials is masked"):
         dapple.Scene.from_arrays(
             vertices, [[0, 1, 2], [0, 2, 1]], 1.0, np.ma.array([1, 2], mask=[0, 1])
