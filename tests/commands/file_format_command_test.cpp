@@ -31,6 +31,16 @@ TEST_F(FileFormatCommand, CompareFindsLosslessFilesEqualAndHalvesNear) {
   EXPECT_EQ(dapple("compare out.exr float.exr --max-rmse 0.001").code, 0);
 }
 
+TEST_F(FileFormatCommand, ALayerThatTheFirstFileLacksIsTooLargeADifferenceWhereThereIsALimit) {
+  ASSERT_EQ(render("-q").code, 0);
+  std::filesystem::rename(path("out.exr"), path("whole.exr"));
+  ASSERT_EQ(render("-q --passes ao").code, 0);
+  const std::string compare = "compare out.exr whole.exr --layer albedo";
+  EXPECT_EQ(dapple(compare + " --max-rmse 9").code, 5);
+  EXPECT_EQ(dapple(compare).code, 2);
+  EXPECT_EQ(dapple("compare out.exr whole.exr --layer nothing --max-rmse 9").code, 2);
+}
+
 TEST_F(FileFormatCommand, AResumedRenderWritesTheSameHalves) {
   ASSERT_EQ(render("-q --half all --multipart --checkpoint a.ckpt").code, 0);
   const std::string first = bytes_of(path("out.exr"));

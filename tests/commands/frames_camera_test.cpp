@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "dapple/film.hpp"
+#include "support/files/gltf_builder.hpp"
 #include "support/programs/program_run.hpp"
 
 namespace dapple {
@@ -50,8 +51,7 @@ std::string camera_options(const std::string& notes) {
   return std::regex_search(notes, found, kOptions) ? found[1].str() : "";
 }
 
-// The options have six digits: the camera is moved and turned by some 1e-5 of its distance, and so
-// are the depths of what its rays hit, more where they graze it.
+// Coordinates are rounded to floats: depths of what rays graze differ more than others.
 TEST_F(FramesCamera, TheNotedOptionsShowALaterFrameAsTheSequenceDid) {
   for (const std::string size : {"--width 16 --height 9 ", "--width 9 --height 16 "}) {
     SCOPED_TRACE(size);
@@ -63,6 +63,42 @@ TEST_F(FramesCamera, TheNotedOptionsShowALaterFrameAsTheSequenceDid) {
     ASSERT_EQ(tree(size + "--frames 2-2 --fps 1 -q -o own.#.exr").code, 0);
     EXPECT_LT(difference("whole.2.exr", "later.2.exr"), 1e-3);
     EXPECT_GT(difference("whole.2.exr", "own.2.exr"), 1e-2) << "its own camera is another";
+  }
+}
+
+/// A wall of 1 m that faces +Z at `at`, and grows from nothing within a second.
+test::GltfBuilder growing_wall(const std::vector<float>& at) {
+  test::GltfBuilder file;
+  file.add_mesh({{"attributes",
+                  {{"POSITION",
+                    file.add_positions({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 0, 0, 1, 1, 0, 0, 1, 0})}}}});
+  file.doc["nodes"][0]["translation"] = at;
+  const int times = file.add_accessor(std::vector<float>{0, 1}, test::kFloat, "SCALAR");
+  for (const char* end : {"min", "max"})
+    file.doc["accessors"][times][end] = {end[1] == 'i' ? 0 : 1};
+  const int scales = file.add_accessor(std::vector<float>{0, 0, 0, 1, 1, 1}, test::kFloat, "VEC3");
+  file.add("animations",
+           {{"samplers", {{{"input", times}, {"output", scales}}}},
+            {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "scale"}}}}}}});
+  return file;
+}
+
+// Its camera is that of the wall when it is grown, and repeated 40 km from the origin, too.
+TEST_F(FramesCamera, OfWhatGrowsFromNothingIsThatOfItsEnd) {
+  for (const float far : {0.0f, 30000.0f}) {
+    SCOPED_TRACE(far);
+    const test::Bytes glb = growing_wall({far, 0, far}).glb();
+    write_bytes(path("wall.glb"), std::string(glb.begin(), glb.end()));
+    const std::string wall = "render wall.glb --spp 4 --passes ao --width 16 --height 9 --fps 1 ";
+    const Outcome whole = dapple(wall + "--frames 0-1 -o whole.#.exr");
+    ASSERT_EQ(whole.code, 0) << whole.err;
+    ASSERT_EQ(dapple(wall + "--frames 1-1 -q -o own.#.exr").code, 0);
+    EXPECT_LT(difference("whole.1.exr", "own.1.exr"), 1e-3);
+    const std::string again = "--frames 1-1 -q -o later.#.exr " + camera_options(whole.err);
+    ASSERT_EQ(dapple(wall + again).code, 0);
+    EXPECT_LT(difference("whole.1.exr", "later.1.exr"), 1e-2);
+    const Film empty = read_exr(path("whole.0.exr"));
+    for (const float a : empty.find("A")->pixels) EXPECT_EQ(a, 0);
   }
 }
 

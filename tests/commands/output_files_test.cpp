@@ -80,6 +80,7 @@ TEST_F(OutputFiles, OutputsThatAreOneFileAreRefusedByTheirFlags) {
   write_bytes(path("old.exr"), "old");
   std::filesystem::create_hard_link(path("old.exr"), path("same.exr"));
   expect_failure(render("--png out.exr"), 2, "--png is out.exr, but previews are PNG files");
+  expect_failure(render("--png out.JPG"), 2, "--png is out.JPG, but previews are PNG files");
   std::filesystem::create_symlink("out.exr", path("out.png"));
   expect_failure(render("--png ./out.png"), 2, "--png");
   std::filesystem::remove(path("out.png"));

@@ -82,6 +82,20 @@ TEST(GltfAnimation, TimesBeforeTheFirstKeyframeAndAfterTheLastAreThose) {
   }
 }
 
+TEST(GltfAnimation, ANoteSaysThatOthersDoNotPlay) {
+  GltfBuilder b = moved({0, 1}, {0, 0, 0, 1, 0, 0}, "LINEAR");
+  EXPECT_TRUE(b.load(at(0.5)).warnings.empty());
+  b.doc["animations"].push_back(b.doc["animations"][0]);
+  b.doc["animations"][0]["name"] = "sway";
+  b.doc["animations"][1]["name"] = "grow";
+  ASSERT_EQ(b.load(at(0.5)).warnings.size(), 1u);
+  expect_says(b.load(at(0.5)).warnings[0],
+              "of its 2 animations only animation 0 (\"sway\") plays; --animation \"*\" plays all");
+  for (const char* chosen : {"grow", "*"})
+    EXPECT_TRUE(b.load(at(0.5, chosen)).warnings.empty()) << chosen;
+  EXPECT_TRUE(b.load().warnings.empty());
+}
+
 TEST(GltfAnimation, WithoutATimeNodesStayAsTheyAreWritten) {
   EXPECT_EQ(moved({1, 2}, {1, 2, 3, 4, 5, 6}, "LINEAR").load().instances.at(0).to_world, M44f());
 }
