@@ -8,7 +8,7 @@
 namespace dapple {
 
 /// The memory of the machine, or the limit of the process's control group, such as a batch system
-/// or a container sets, if that is less. In bytes; 0: unknown.
+/// or a container sets, if that is less. In bytes; not above 0: unknown.
 double machine_bytes();
 
 /// The least limit of the memory groups in `membership`, the text of /proc/self/cgroup, and of

@@ -40,8 +40,6 @@ class SetSums {
     add(value, [](std::size_t) { return 1.0; });
   }
 
-  [[nodiscard]] double mean(std::size_t i) const { return sums_[i].value / sets_; }
-
   /// Corrected values are from 0 to `whole(i)`.
   template <class Whole>
   void store(const std::string& name, const BiasCorrection& bias, const Whole& whole,
@@ -70,6 +68,8 @@ class SetSums {
   }
 
  private:
+  [[nodiscard]] double mean(std::size_t i) const { return sums_[i].value / sets_; }
+
   /// Over the sets of a point.
   struct Sums {
     double value = 0, fall = 0, squared_value = 0, squared_fall = 0, product = 0;

@@ -57,8 +57,8 @@ void check_shutter(const Shutter& shutter, const RenderOptions& options,
 
 std::string uneven_moments_note(int spp, int times) {
   return fmt::format(
-      "some of the {0} moments of the shutter have {1} samples a pixel, others {2}: they show more "
-      "or less; --spp {3} gives all as many",
+      "some of the {0} moments of the shutter have {1} samples a pixel, others {2}, which weigh "
+      "more; --spp {3} gives all as many",
       times, spp / times, spp / times + 1, (spp / times + 1) * times);
 }
 

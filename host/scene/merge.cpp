@@ -241,17 +241,17 @@ void put_out_strands(Scene& scene) {
 
 /// A frame in which everything is scaled to nothing is empty, and no error. A BVH needs a triangle:
 /// this one is too small for a ray to hit.
-void add_speck(Scene& scene) {
+void add_placeholder(Scene& scene) {
   constexpr float kSize = 1e-12f;
-  Mesh speck;
-  speck.name = "speck";
-  speck.positions = {V3f(0, 0, 0), V3f(kSize, 0, 0), V3f(0, kSize, 0)};
-  speck.indices = {0, 1, 2};
-  speck.materials = {0};
+  Mesh triangle;
+  triangle.name = "placeholder";
+  triangle.positions = {V3f(0, 0, 0), V3f(kSize, 0, 0), V3f(0, kSize, 0)};
+  triangle.indices = {0, 1, 2};
+  triangle.materials = {0};
   if (scene.materials.empty()) scene.materials.emplace_back();
   Instance instance;
   instance.mesh = static_cast<std::uint32_t>(scene.meshes.size());
-  scene.meshes.push_back(std::move(speck));
+  scene.meshes.push_back(std::move(triangle));
   scene.instances.push_back(instance);
   scene.warnings.emplace_back("nothing is left in this frame");
 }
@@ -295,7 +295,7 @@ void merge_single_instances(Scene& scene) {
 void merge_frame(Scene& scene) {
   if (scene.animations.empty()) return merge_single_instances(scene);
   merge(scene);
-  if (scene.instances.empty()) add_speck(scene);
+  if (scene.instances.empty()) add_placeholder(scene);
   check_numeric_range(scene);
 }
 

@@ -45,7 +45,7 @@ class FramesCamera : public program_test::ProgramRun {
 /// The options that a note tells; empty: it tells none.
 std::string camera_options(const std::string& notes) {
   static const std::regex kOptions(
-      "note: all frames have the first one's camera; a later sequence has it with "
+      "note: all frames have the same camera; a later sequence has it with "
       "(--look-from \\S+ --look-at \\S+ --fov \\S+)\n");
   std::smatch found;
   return std::regex_search(notes, found, kOptions) ? found[1].str() : "";

@@ -54,8 +54,8 @@ TEST_F(ShutterMoments, OfOtherNumbersOfSamplesAreNotedAndOfEqualOnesAreNot) {
     return contains(run.err, "moments of the shutter have") ? run.err : "";
   };
   const std::string uneven =
-      "note: some of the 8 moments of the shutter have 1 samples a pixel, others 2: they show more "
-      "or less; --spp 16 gives all as many\n";
+      "note: some of the 8 moments of the shutter have 1 samples a pixel, others 2, which weigh "
+      "more; --spp 16 gives all as many\n";
   EXPECT_TRUE(contains(noted(11, ""), uneven));
   EXPECT_TRUE(contains(noted(12, "--motion-samples 8"), uneven));
   EXPECT_TRUE(contains(noted(13, "--motion-samples 5"),

@@ -14,6 +14,7 @@
 
 #include "dapple/error.hpp"
 #include "files/output_file.hpp"
+#include "scene/gltf/document/file_uris.hpp"
 #include "scene/gltf/document/uri.hpp"
 
 namespace dapple {
@@ -64,21 +65,14 @@ nlohmann::json document_of(const fs::path& path) {
   return nlohmann::json::parse(text, nullptr, false);
 }
 
-void insert_files(const nlohmann::json& element, const fs::path& folder,
-                  std::set<fs::path>& files) {
-  for (const auto& [key, value] : element.items()) {
-    if (key == "extras") continue;
-    if ((key == "uri" || key.ends_with("Uri")) && value.is_string())
-      files.insert((folder / gltf::percent_decode(value.get<std::string>())).lexically_normal());
-    if (value.is_structured()) insert_files(value, folder, files);
-  }
-}
-
 /// Files that a glTF file names: an earlier bake's output may be there, with its copies.
 std::set<fs::path> files_of(const fs::path& output) {
   std::set<fs::path> files;
   const nlohmann::json document = document_of(output);
-  if (document.is_object()) insert_files(document, output.parent_path(), files);
+  if (!document.is_object()) return files;
+  gltf::for_each_uri(document, [&](const std::string& uri, bool) {
+    files.insert((output.parent_path() / gltf::percent_decode(uri)).lexically_normal());
+  });
   return files;
 }
 

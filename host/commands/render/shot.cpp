@@ -97,9 +97,8 @@ Shot::Defaults Shot::choose_defaults(const Scene& first, const Scene& shown) con
   if (!options_.look && first.cameras.empty()) {
     chosen.camera = camera;
     if (!arguments_.frames.empty())
-      chosen.notes.push_back(
-          "all frames have the first one's camera; a later sequence has it with " +
-          camera_options(camera));
+      chosen.notes.push_back("all frames have the same camera; a later sequence has it with " +
+                             camera_options(camera));
   }
   if (!options_.look) chosen.camera_name = camera.name;
   chosen.focus_distance = camera.focus_distance;

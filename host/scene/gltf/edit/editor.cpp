@@ -7,6 +7,7 @@
 #include "files/output_file.hpp"
 #include "scene/glb/glb_bytes.hpp"
 #include "scene/gltf/document/extension_names.hpp"
+#include "scene/gltf/document/file_uris.hpp"
 #include "scene/gltf/document/uri.hpp"
 #include "scene/gltf/edit/compaction.hpp"
 #include "scene/gltf/edit/extension_use.hpp"
@@ -36,20 +37,6 @@ bool is_inside(const UriBase& base, const std::string& uri) {
     return true;
   } catch (const Error&) {
     return false;
-  }
-}
-
-/// Files in the scene's folder that extensions name, such as sounds and schemas: members `uri` and
-/// `schemaUri`.
-void append_extension_uris(const Json& element, bool in_extensions, const UriBase& base,
-                           std::vector<std::string>& uris) {
-  for (const auto& [key, value] : element.items()) {
-    if (key == "extras") continue;
-    const bool names_file = in_extensions && (key == "uri" || key.ends_with("Uri"));
-    if (names_file && value.is_string() && is_inside(base, value.get<std::string>()))
-      uris.push_back(value.get<std::string>());
-    if (value.is_structured())
-      append_extension_uris(value, in_extensions || key == "extensions", base, uris);
   }
 }
 
@@ -232,7 +219,9 @@ std::vector<std::pair<std::string, std::string>> Editor::side_copies() const {
   for (const char* array : {"buffers", "images"})
     for (const Json& entry : content().json.value(array, Json::array()))
       if (!is_glb_out() && entry.contains("uri")) uris.push_back(entry["uri"].get<std::string>());
-  append_extension_uris(content().json, false, content().document.base, uris);
+  for_each_uri(content().json, [&](const std::string& uri, bool of_extension) {
+    if (of_extension && is_inside(content().document.base, uri)) uris.push_back(uri);
+  });
   const fs::path folder = fs::path(out_).parent_path();
   std::vector<std::pair<std::string, std::string>> files;
   for (const std::string& uri : uris) {
