@@ -31,11 +31,13 @@ class SampledMesh : public SampledSurface {
     return is_at_vertices_ ? at_vertices_[i].weight[0] > 0 : has_area(mesh_, i);
   }
 
-  [[nodiscard]] SurfaceSample sample(std::size_t i, std::uint32_t index) const override {
+  [[nodiscard]] SurfaceSample sample(std::size_t i, std::uint32_t index,
+                                     std::uint32_t sequence) const override {
     if (is_at_vertices_) return at_vertices_[i];
     // A digital shift, which keeps the parts of the sequence: without it the first sample of all
     // triangles would be their centre, where cards often cross.
-    const std::uint32_t shift = hash_of(hash_, static_cast<std::uint32_t>(i)) & kMaxShift;
+    const std::uint32_t shift =
+        hash_of(hash_ + sequence, static_cast<std::uint32_t>(i)) & kMaxShift;
     return sample_triangle(triangles_, i, index ^ shift);
   }
 
@@ -155,12 +157,11 @@ std::optional<BakedMesh> bake_mesh(const Mesh& mesh, const std::vector<bool>& tw
   // At a vertex alone, only a second sample tells the variance.
   const std::uint32_t first = options.at_vertices ? 2 : 1;
   ValueSums sums(small_parts(mesh, groups), options.sides);
-  SampleRounds rounds(sampled, hash, placements, tracing, sums);
+  SampleRounds rounds(sampled, hash, placements, tracing, sums, options.sides);
   RoundOptions how = round_options(options, first, placements, false);
   if (options.at_vertices)
     how.fixed = sample_counts(options.rays, placements.to_world.size(), true);
   if (!rounds.run(how)) return {};
-  sums.choose_sides();
   BakeStatistics& statistics = tracing.statistics;
   statistics.sampled_values += add_errors(groups, sums, statistics.squared_errors);
   const std::vector<PlaceValue> of_group = sums.values();
@@ -169,9 +170,8 @@ std::optional<BakedMesh> bake_mesh(const Mesh& mesh, const std::vector<bool>& tw
   for (const PlaceValue& value : of_group) known.push_back(value.known);
   if (tracing.light) {
     ValueSums light(small_parts(mesh, groups), options.sides, tracing.lights);
-    SampleRounds light_rounds(sampled, ~hash, placements, tracing, light, &sums);
+    SampleRounds light_rounds(sampled, ~hash, placements, tracing, light, options.sides, &sums);
     if (!light_rounds.run(round_options(options, first, placements, true))) return {};
-    light.choose_sides();
     add_errors(groups, light, statistics.squared_light_errors);
     for (std::size_t l = 0; l < tracing.lights; ++l) values.light.push_back(light.light_values(l));
     for (std::uint32_t i = 0; i < known.size(); ++i) known[i] = known[i] && !light.is_inside(i);

@@ -295,9 +295,14 @@ MUTATIONS = [
         "square(source, u, v) > square(nearest[to], u, v)",
         r"^Dilation\."),
     Mutation(
-        "variance-of-bakes-by-one-interval", "host/bake/samples/value_sums.cpp",
+        "variance-of-bakes-by-one-interval", "host/bake/samples/pooled_variance.cpp",
         "kWeights{1, 0.5, 0.25}",
         "kWeights{1, 0, 0}",
+        r"^BakeTarget\."),
+    Mutation(
+        "errors-of-bakes-by-their-samples-alone", "host/bake/samples/error_check.cpp",
+        "return static_cast<float>((squares + prior) / (told + prior));",
+        "return static_cast<float>((told + prior) / (told + prior));",
         r"^BakeTarget\."),
     Mutation(
         "bent-normals-count-by-scale", "host/bake/samples/sample_tracer.cpp",

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "bake/placement_choice.hpp"
 #include "sampling/random_choice.hpp"
@@ -42,7 +43,7 @@ double place_count(const std::array<std::uint32_t, 3>& places) {
 
 SampleRounds::SampleRounds(const SampledSurface& surface, std::uint32_t hash,
                            const Placements& placements, BakeTracing& tracing, ValueSums& sums,
-                           const ValueSums* ao)
+                           BakeSides sides, const ValueSums* ao)
     : surface_(surface),
       hash_(hash),
       placements_(placements),
@@ -52,6 +53,8 @@ SampleRounds::SampleRounds(const SampledSurface& surface, std::uint32_t hash,
       ao_(ao),
       lights_(ao ? std::max<std::size_t>(1, tracing.lights) : 1),
       variance_(surface.size(), this->placements()),
+      check_(surface, sums.size(), sides),
+      checked_(check_.elements().size()),
       taken_(surface.size()) {}
 
 bool SampleRounds::run(const RoundOptions& options) {
@@ -59,12 +62,12 @@ bool SampleRounds::run(const RoundOptions& options) {
   const bool is_fixed = options.target_error <= 0;
   is_in_all_placements_ = is_fixed && static_cast<std::size_t>(options.fixed.samples) >=
                                           kPointsOfPlacement * placements();
-  sums_.set_sampling(is_fixed ? options.fixed.rays : options.rays, placements() > 1);
+  sums_.set_sampling({is_fixed ? options.fixed.rays : options.rays, placements() > 1});
   const bool done =
       is_fixed ? take(static_cast<std::uint32_t>(options.fixed.samples), options.fixed.rays)
                : take(std::min(first_samples(options.first), options.limit), options.rays) &&
                      refine(options.target_error, options.limit);
-  set_variance_factors();
+  if (done && is_fixed) judge();
   tracing_.progress.show();
   return done;
 }
@@ -96,8 +99,7 @@ bool SampleRounds::take(std::uint32_t samples, int rays) {
 bool SampleRounds::refine(float target, std::uint32_t max_samples) {
   std::vector<std::uint32_t> wanted(taken_.size());
   for (;;) {
-    sums_.choose_sides();
-    set_variance_factors();
+    judge();
     const std::vector<float> factors = sums_.missing_samples(target);
     double more = 0;
     for (std::size_t i = 0; i < taken_.size(); ++i) {
@@ -155,13 +157,39 @@ bool SampleRounds::round(const std::vector<std::uint32_t>& wanted) {
     for (; taken_[i] < wanted[i]; ++taken_[i]) next_.push_back({i, taken_[i]});
     if (next_.size() >= samples_at_once_ && !trace()) return false;
   }
-  return trace() && trace();
+  if (!trace() || !trace()) return false;
+  trace_second_set();
+  return true;
+}
+
+// As many samples of the elements to be compared as were taken of each.
+void SampleRounds::trace_second_set() {
+  std::vector<SampleIndex> indices;
+  for (std::size_t k = 0; k < checked_.size(); ++k) {
+    const std::uint32_t element = check_.elements()[k];
+    for (; checked_[k] < taken_[element]; ++checked_[k])
+      indices.push_back({element, checked_[k], 1});
+  }
+  if (indices.empty()) return;
+  const Batch batch = make_batch(std::move(indices));
+  const TracedSamples found = traced(batch);
+  check_.add(batch.samples, found);
+  count(found);
+}
+
+// Tells errors by all samples so far.
+void SampleRounds::judge() {
+  sums_.choose_sides();
+  set_variance_factors();
+  sums_.set_error_ratio(1);
+  sums_.set_error_ratio(check_.ratio(sums_));
 }
 
 // A sample, without the sides that count for no value.
 SurfaceSample SampleRounds::sample(const SampleIndex& index) const {
   SurfaceSample sample = surface_.sample(
-      index.element, is_in_all_placements_ ? index.number / placements() : index.number);
+      index.element, is_in_all_placements_ ? index.number / placements() : index.number,
+      index.sequence);
   bool front = false, back = false;
   for (const std::uint32_t place : surface_.places(index.element)) {
     front = front || sums_.counts(place, false);
@@ -176,22 +204,26 @@ SurfaceSample SampleRounds::sample(const SampleIndex& index) const {
   return sample;
 }
 
+SampleRounds::Batch SampleRounds::make_batch(std::vector<SampleIndex> indices) {
+  Batch batch;
+  batch.indices = std::move(indices);
+  batch.samples.resize(batch.indices.size());
+  batch.placement.resize(batch.indices.size());
+  batch.hash = hash_of(hash_, batch_);
+  tbb::parallel_for(std::size_t{0}, batch.indices.size(), [&](std::size_t i) {
+    const SampleIndex& index = batch.indices[i];
+    batch.samples[i] = sample(index);
+    batch.placement[i] = placement_of_sample(index.number, placements(),
+                                             hash_of(~hash_ - index.sequence, index.element));
+  });
+  if (!batch.indices.empty()) ++batch_;
+  return batch;
+}
+
 // Starts tracing the samples of the list, and adds what the batch before found meanwhile. Asks
 // whether to stop in between, when no batch is traced: a driver may hang in the next.
 bool SampleRounds::trace() {
-  Batch batch;
-  batch.samples.resize(next_.size());
-  batch.placement.resize(next_.size());
-  batch.hash = hash_of(hash_, batch_);
-  tbb::parallel_for(std::size_t{0}, next_.size(), [&](std::size_t i) {
-    const SampleIndex& index = next_[i];
-    batch.samples[i] = sample(index);
-    batch.placement[i] =
-        placement_of_sample(index.number, placements(), hash_of(~hash_, index.element));
-  });
-  if (!next_.empty()) ++batch_;
-  batch.indices = std::move(next_);
-  next_.clear();
+  Batch batch = make_batch(std::exchange(next_, {}));
   std::optional<TracedSamples> found;
   if (traced_.valid()) found = traced_.get();
   Batch before = std::move(batch_traced_);
@@ -208,11 +240,15 @@ TracedSamples SampleRounds::traced(const Batch& batch) const {
   return trace_(batch.samples, batch.placement, placements_, rays_, batch.hash);
 }
 
-void SampleRounds::add_traced(const Batch& batch, const TracedSamples& found) {
-  sums_.add(batch.samples, found);
+void SampleRounds::count(const TracedSamples& found) {
   tracing_.statistics.points += found.points;
   tracing_.statistics.rays += found.rays;
   for (const std::uint8_t inside : found.inside) tracing_.statistics.inside_samples += inside;
+}
+
+void SampleRounds::add_traced(const Batch& batch, const TracedSamples& found) {
+  sums_.add(batch.samples, found);
+  count(found);
   for (std::size_t i = 0; i < batch.samples.size() && placements() > 1; ++i)
     if (!found.is_inside(i))
       variance_.add(batch.indices[i].element, batch.placement[i], batch.samples[i],

@@ -6,6 +6,7 @@
 #include <future>
 
 #include "bake/bake_progress.hpp"
+#include "bake/samples/error_check.hpp"
 #include "bake/samples/placement_variance.hpp"
 #include "bake/samples/sampled_surface.hpp"
 #include "bake/samples/value_sums.hpp"
@@ -35,7 +36,8 @@ class SampleRounds {
   /// `hash`: random bits of the surface. `ao`: lights are traced, and these are the values of AO;
   /// null: AO is traced. All references must outlive the rounds.
   SampleRounds(const SampledSurface& surface, std::uint32_t hash, const Placements& placements,
-               BakeTracing& tracing, ValueSums& sums, const ValueSums* ao = nullptr);
+               BakeTracing& tracing, ValueSums& sums, BakeSides sides,
+               const ValueSums* ao = nullptr);
 
   /// Takes samples as the options say. False: stopped.
   bool run(const RoundOptions& options);
@@ -43,6 +45,7 @@ class SampleRounds {
  private:
   struct SampleIndex {
     std::uint32_t element, number;
+    std::uint32_t sequence = 0;  ///< SampledSurface::sample(); 1: of the second set
   };
   struct Batch {
     std::vector<SampleIndex> indices;
@@ -61,9 +64,13 @@ class SampleRounds {
     return static_cast<std::uint32_t>(placements_.to_world.size());
   }
   [[nodiscard]] SurfaceSample sample(const SampleIndex& index) const;
+  [[nodiscard]] Batch make_batch(std::vector<SampleIndex> indices);
   bool trace();
+  void trace_second_set();
+  void judge();
   TracedSamples traced(const Batch& batch) const;
   void add_traced(const Batch& batch, const TracedSamples& found);
+  void count(const TracedSamples& found);
   void set_variance_factors();
 
   const SampledSurface& surface_;
@@ -78,8 +85,10 @@ class SampleRounds {
   int rays_ = kRaysPerSample;
   bool is_in_all_placements_ = false;  ///< each point of an element is a sample in all placements
   PlacementVariance variance_;
-  std::vector<std::uint32_t> taken_;  ///< samples of each element
-  std::vector<SampleIndex> next_;     ///< to be traced
+  ErrorCheck check_;
+  std::vector<std::uint32_t> checked_;  ///< samples of each of its elements
+  std::vector<std::uint32_t> taken_;    ///< samples of each element
+  std::vector<SampleIndex> next_;       ///< to be traced
   Batch batch_traced_;
   std::future<TracedSamples> traced_;  ///< last: its destructor waits for the thread
 };

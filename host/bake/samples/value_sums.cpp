@@ -30,15 +30,6 @@ constexpr float kSharedSamples = 2;
 /// Places that one thread takes at a time.
 constexpr std::size_t kPlacesAtOnce = 1u << 14;
 
-/// The variance of samples is pooled over values in this many intervals of AO.
-constexpr int kIntervals = 16;
-
-/// Degrees of freedom that the pooled variance counts beside a place's own.
-constexpr float kPooledFreedom = 4;
-
-/// Degrees of freedom that the variance of single rays counts beside those of all samples.
-constexpr float kRayFreedom = 8;
-
 /// The sum of the sides' directions; the front's where the sides see alike, so that they cancel but
 /// for their noise.
 V3f bent_of_both(const V3f& front, const V3f& back) {
@@ -59,119 +50,6 @@ PlacesOfParts::PlacesOfParts(const SmallParts& parts) : begin_(parts.count + 1) 
     if (parts.of_place[place] != SmallParts::kLarge) places_[next[parts.of_place[place]]++] = place;
 }
 
-void ValueSums::Side::add(float w, const SideValue& value) {
-  weight += w;
-  weight_squares += w * w;
-  sum += w * value.scalar;
-  sum_squares += w * value.scalar * value.scalar;
-  bent += value.bent * w;
-}
-
-float ValueSums::Side::count() const {
-  return weight_squares > 0 ? weight * weight / weight_squares : 0;
-}
-
-float ValueSums::BothSides::inside_count() const {
-  return inside_squares > 0 ? inside_weight * inside_weight / inside_squares : 0;
-}
-
-float ValueSums::Side::squared_deviations() const {
-  return weight > 0 ? std::max(0.0f, sum_squares / weight - mean() * mean()) * count() : 0.0f;
-}
-
-/// Relative variance of AO of 1/2 from `rays` rays that each find everything or nothing, over 1/4.
-/// With many rays per sample these are stratified: the variance falls as rays^-1.5 (Mitchell,
-/// "Consequences of Stratified Sampling in Graphics", 1996).
-double variance_of_rays(int rays) {
-  const double n = std::max(1, rays), few = kRaysPerSample;
-  return n <= few ? 1 / n : std::sqrt(few / n) / n;
-}
-
-/// The variance of samples as a function of the value that they belong to: that of a few samples of
-/// one place says little. Of samples in several placements it is the same for all values: where a
-/// few samples happen to be in like placements, the value is wrong and its variance small.
-class ValueSums::PooledVariance {
- public:
-  /// Values are from 0 to `scale`.
-  PooledVariance(float scale, int rays, bool several_placements)
-      : scale_(scale), of_rays_(variance_of_rays(rays)), several_placements_(several_placements) {}
-
-  void add(const Side& side) {
-    const float freedom = side.count() - 1;
-    if (freedom < 0.5f) return;
-    for (Pool* pool : {&of_interval_[interval(side.mean())], &all_}) {
-      pool->squares += double{side.squared_deviations()};
-      pool->freedom += double{freedom};
-    }
-  }
-
-  PooledVariance& operator+=(const PooledVariance& other) {
-    for (std::size_t i = 0; i < of_interval_.size(); ++i) of_interval_[i] += other.of_interval_[i];
-    all_ += other.all_;
-    return *this;
-  }
-
-  /// To be called when all have been added, before of().
-  void pool() {
-    for (std::size_t i = 0; i < of_interval_.size(); ++i) around_[i] = around(i);
-  }
-
-  /// Of the samples of `side`, its own deviations included.
-  [[nodiscard]] float of(const Side& side) const {
-    const float own = std::max(0.0f, side.count() - 1);
-    return (kPooledFreedom * pooled(side.mean()) + side.squared_deviations()) /
-           (kPooledFreedom + own);
-  }
-
- private:
-  struct Pool {
-    double squares = 0, freedom = 0;
-    void operator+=(const Pool& other) {
-      squares += other.squares;
-      freedom += other.freedom;
-    }
-  };
-
-  [[nodiscard]] std::size_t interval(float value) const {
-    return static_cast<std::size_t>(
-        std::clamp(static_cast<int>(value / scale_ * kIntervals), 0, kIntervals - 1));
-  }
-
-  /// Of an interval and, with smaller weights, of those next to it: some values are only possible
-  /// where a place's few samples are equal.
-  [[nodiscard]] Pool around(std::size_t interval) const {
-    constexpr std::array<double, 3> kWeights{1, 0.5, 0.25};
-    Pool sum;
-    for (std::size_t i = 0; i < of_interval_.size(); ++i) {
-      const std::size_t distance = i > interval ? i - interval : interval - i;
-      if (distance >= kWeights.size()) continue;
-      sum.squares += kWeights[distance] * of_interval_[i].squares;
-      sum.freedom += kWeights[distance] * of_interval_[i].freedom;
-    }
-    return sum;
-  }
-
-  [[nodiscard]] float pooled(float value) const {
-    // A few samples may be equal by chance. So the variance of rays that each find everything or
-    // nothing counts as much as some samples. The value is as uncertain: hence the clamp.
-    const double part = std::clamp(double{value / scale_}, 0.1, 0.9);
-    const double of_rays = double{scale_ * scale_} * part * (1 - part) * of_rays_;
-    const double all =
-        (all_.squares + double{kRayFreedom} * of_rays) / (all_.freedom + double{kRayFreedom});
-    if (several_placements_) return static_cast<float>(all);
-    const Pool& pool = around_[interval(value)];
-    return static_cast<float>((pool.squares + double{kPooledFreedom} * all) /
-                              (pool.freedom + double{kPooledFreedom}));
-  }
-
-  float scale_;
-  double of_rays_;
-  bool several_placements_;
-  std::array<Pool, kIntervals> of_interval_;
-  std::array<Pool, kIntervals> around_;  ///< of each interval, its neighbours included
-  Pool all_;
-};
-
 ValueSums::ValueSums(SmallParts parts, BakeSides sides, std::size_t lights)
     : sides_(sides),
       parts_(std::move(parts)),
@@ -181,11 +59,6 @@ ValueSums::ValueSums(SmallParts parts, BakeSides sides, std::size_t lights)
       lights_(lights),
       front_light_(of_place_.size() * lights, V3f(0, 0, 0)),
       back_light_(front_light_) {}
-
-void ValueSums::set_sampling(int rays, bool several_placements) {
-  rays_ = rays;
-  several_placements_ = several_placements;
-}
 
 void ValueSums::add(std::span<const SurfaceSample> samples, const TracedSamples& found) {
   largest_ = std::max(largest_, found.largest);
@@ -224,7 +97,7 @@ void ValueSums::add(const SurfaceSample& sample, const TracedSamples& found, std
 }
 
 // In parts of fixed size, so that the sums do not depend on the number of threads.
-ValueSums::PooledVariance ValueSums::pooled_variance() const {
+PooledVariance ValueSums::pooled_variance() const {
   const auto add_range = [&](const tbb::blocked_range<std::size_t>& range, PooledVariance sum) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
       sum.add(of_place_[i].front);
@@ -234,7 +107,7 @@ ValueSums::PooledVariance ValueSums::pooled_variance() const {
   };
   PooledVariance pooled = tbb::parallel_deterministic_reduce(
       tbb::blocked_range<std::size_t>(0, of_place_.size(), kPlacesAtOnce),
-      PooledVariance(scale(), rays_, several_placements_), add_range,
+      PooledVariance(scale(), sampling_), add_range,
       [](PooledVariance a, const PooledVariance& b) { return a += b; });
   pooled.pool();
   return pooled;
@@ -249,7 +122,7 @@ float ValueSums::BackMinusFront::share_of_back() const {
 }
 
 void ValueSums::BackMinusFront::add(const BothSides& values, const PooledVariance& variance) {
-  const Side &front = values.front, &back = values.back;
+  const SideSums &front = values.front, &back = values.back;
   if (!(front.weight > 0 && back.weight > 0)) return;
   ++places;
   difference += back.mean() - front.mean();
@@ -259,11 +132,12 @@ void ValueSums::BackMinusFront::add(const BothSides& values, const PooledVarianc
 // By small parts: means of single vertices are noisy, and the larger of two is biased. All places
 // of a part count the same, however many samples they have.
 void ValueSums::choose_sides() {
+  variance_ = pooled_variance();
   if (sides_ == BakeSides::mean) return;
-  const PooledVariance variance = pooled_variance();
   tbb::parallel_for(std::size_t{0}, parts_.count, [&](std::size_t part) {
     BackMinusFront of_part;
-    for (const std::uint32_t place : places_of_part_[part]) of_part.add(of_place_[place], variance);
+    for (const std::uint32_t place : places_of_part_[part])
+      of_part.add(of_place_[place], variance_);
     of_part.square_error *= kSharedSamples;
     const float share = of_part.share_of_back();
     for (const std::uint32_t place : places_of_part_[part]) share_of_back_[place] = share;
@@ -271,29 +145,37 @@ void ValueSums::choose_sides() {
   tbb::parallel_for(std::size_t{0}, share_of_back_.size(), [&](std::size_t i) {
     if (parts_.of_place[i] != SmallParts::kLarge) return;
     BackMinusFront of_place;
-    of_place.add(of_place_[i], variance);
+    of_place.add(of_place_[i], variance_);
     share_of_back_[i] = of_place.share_of_back();
   });
 }
 
-float ValueSums::sampled_share_of_back(std::uint32_t place) const {
-  const BothSides& sides = of_place_[place];
-  if (!(sides.front.weight > 0)) return 1;
-  return sides.back.weight > 0 ? share_of_back_[place] : 0.0f;
+float ValueSums::share_of_back(std::uint32_t place, const BothSides& sums) const {
+  if (!(sums.front.weight > 0)) return 1;
+  return sums.back.weight > 0 ? share_of_back_[place] : 0.0f;
+}
+
+float ValueSums::scalar(std::uint32_t place, const BothSides& sums) const {
+  const float front = sums.front.mean(), back = sums.back.mean();
+  return (front + share_of_back(place, sums) * (back - front)) / scale();
+}
+
+float ValueSums::squared_error(std::uint32_t place) const {
+  const BothSides& sums = of_place_[place];
+  float square = 0;
+  for (const bool back : {false, true}) {
+    const SideSums& side = back ? sums.back : sums.front;
+    if (counts(place, back) && side.weight > 0)
+      square = std::max(square, variance_.of(side) / side.count());
+  }
+  if (sides_ == BakeSides::mean && sums.back.weight > 0) square *= 0.5f;  // of two of them
+  return square * error_ratio_ * (factors_.empty() ? 1 : factors_[place]) / (scale() * scale());
 }
 
 std::vector<float> ValueSums::squared_errors() const {
-  const PooledVariance variance = pooled_variance();
   std::vector<float> squares(of_place_.size());
   tbb::parallel_for(std::size_t{0}, squares.size(), [&](std::size_t i) {
-    const BothSides& place = of_place_[i];
-    for (const bool back : {false, true}) {
-      const Side& side = back ? place.back : place.front;
-      if (counts(static_cast<std::uint32_t>(i), back) && side.weight > 0)
-        squares[i] = std::max(squares[i], variance.of(side) / side.count());
-    }
-    if (sides_ == BakeSides::mean && place.back.weight > 0) squares[i] *= 0.5f;  // of two of them
-    squares[i] *= (factors_.empty() ? 1 : factors_[i]) / (scale() * scale());
+    squares[i] = squared_error(static_cast<std::uint32_t>(i));
   });
   return squares;
 }
@@ -326,7 +208,7 @@ std::vector<PlaceValue> ValueSums::values() const {
       continue;
     }
     if (is_dark(i) && has_inside(i)) continue;
-    const float share = sampled_share_of_back(i);
+    const float share = share_of_back(i, place);
     const float ao = place.front.mean() + share * (place.back.mean() - place.front.mean());
     // Bent normals of two sides cancel each other: that of the more likely side counts.
     V3f bent = share > 0.5f ? place.back.bent : place.front.bent;
@@ -340,7 +222,7 @@ std::vector<V3f> ValueSums::light_values(std::size_t light) const {
   std::vector<V3f> values(of_place_.size(), V3f(0, 0, 0));
   for (std::uint32_t i = 0; i < values.size(); ++i) {
     if (!is_sampled(i)) continue;
-    const float share = sampled_share_of_back(i);
+    const float share = share_of_back(i, of_place_[i]);
     const std::size_t at = i * lights_ + light;
     if (share < 1) values[i] += front_light_[at] * ((1 - share) / of_place_[i].front.weight);
     if (share > 0) values[i] += back_light_[at] * (share / of_place_[i].back.weight);

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "bake/samples/sample_tracer.hpp"
+#include "bake/samples/pooled_variance.hpp"
 #include "dapple/bake.hpp"
 
 namespace dapple {
@@ -46,8 +46,10 @@ class ValueSums {
   /// Number of places.
   [[nodiscard]] std::size_t size() const { return of_place_.size(); }
 
-  /// How samples are taken: `rays` of each, and whether each is in one of several placements.
-  void set_sampling(int rays, bool several_placements);
+  void set_sampling(const Sampling& sampling) { sampling_ = sampling; }
+
+  /// By what the squared errors that samples tell are to be multiplied: error_check.hpp.
+  void set_error_ratio(float ratio) { error_ratio_ = ratio; }
 
   /// For each place variance_factor() of its samples; without them, all 1.
   void set_variance_factors(std::vector<float> factors) { factors_ = std::move(factors); }
@@ -56,9 +58,9 @@ class ValueSums {
   /// not count for values.
   void add(std::span<const SurfaceSample> samples, const TracedSamples& found);
 
-  /// Chooses the brighter side of each small part and of each place of larger ones, from the
-  /// samples so far. Where neither is surely the brighter one, both count, each by the probability
-  /// that it is. For BakeSides::mean both count the same.
+  /// Learns how far samples vary. Chooses the brighter side of each small part and of each place of
+  /// larger ones, from the samples so far. Where neither is surely the brighter one, both count,
+  /// each by the probability that it is. For BakeSides::mean both count the same.
   void choose_sides();
 
   /// Whether a side of a place counts for its value.
@@ -81,9 +83,18 @@ class ValueSums {
     return has_inside(place) && !is_sampled(place);
   }
 
-  /// The squared standard error of each place's scalar, estimated from its samples and from those
-  /// of places of similar value; relative to the largest unoccluded value so far (of AO: 1).
-  [[nodiscard]] std::vector<float> squared_errors() const;
+  /// The squared standard error of a place's scalar, estimated from its samples and from those of
+  /// places of similar value, as choose_sides() found them; relative to the largest unoccluded
+  /// value so far (of AO: 1), times the error ratio.
+  [[nodiscard]] float squared_error(std::uint32_t place) const;
+  [[nodiscard]] std::vector<float> squared_errors() const;  ///< of all places
+
+  /// The scalar of a place, of both sides by their shares, relative to the same value. Of samples
+  /// of `other` if given, whose place `at` is the same one.
+  [[nodiscard]] float scalar(std::uint32_t place) const { return scalar(place, of_place_[place]); }
+  [[nodiscard]] float scalar(std::uint32_t place, const ValueSums& other, std::uint32_t at) const {
+    return scalar(place, other.of_place_[at]);
+  }
 
   /// For each place, by what factor the number of its samples must grow for a standard error of
   /// `target`; 1: enough. Places that may be enclosed need more than others.
@@ -96,23 +107,6 @@ class ValueSums {
   [[nodiscard]] std::vector<V3f> light_values(std::size_t light) const;
 
  private:
-  /// Sums over the samples of one side.
-  struct Side {
-    float weight = 0, weight_squares = 0, sum = 0, sum_squares = 0;
-    V3f bent{0, 0, 0};
-    void add(float w, const SideValue& value);
-    [[nodiscard]] float mean() const { return weight > 0 ? sum / weight : 0; }
-    /// Number of samples of equal weight that would have the same standard error.
-    [[nodiscard]] float count() const;
-    /// Sum of squared deviations, for count() - 1 degrees of freedom.
-    [[nodiscard]] float squared_deviations() const;
-  };
-  struct BothSides {
-    Side front, back;
-    float inside_weight = 0, inside_squares = 0;  ///< of samples inside closed geometry
-    [[nodiscard]] float inside_count() const;
-  };
-  class PooledVariance;
   /// How much brighter the backs of places are than their fronts: sums over places that have both.
   struct BackMinusFront {
     float difference = 0, square_error = 0;
@@ -127,8 +121,9 @@ class ValueSums {
   [[nodiscard]] float scale() const { return largest_ > 0 ? largest_ : 1; }
   [[nodiscard]] bool is_dark(std::uint32_t place) const;
   [[nodiscard]] PooledVariance pooled_variance() const;
-  /// share_of_back_ of a place, whose sides may lack samples.
-  [[nodiscard]] float sampled_share_of_back(std::uint32_t place) const;
+  /// share_of_back_ of a place, of whose sides `sums` may lack samples.
+  [[nodiscard]] float share_of_back(std::uint32_t place, const BothSides& sums) const;
+  [[nodiscard]] float scalar(std::uint32_t place, const BothSides& sums) const;
 
   BakeSides sides_;
   SmallParts parts_;
@@ -136,8 +131,9 @@ class ValueSums {
   std::vector<BothSides> of_place_;
   std::vector<float> share_of_back_;  ///< by place, [0,1]: the weight of its back
   std::vector<float> factors_;        ///< by place, of the variance of means; empty: 1
-  int rays_ = kRaysPerSample;         ///< of a sample
-  bool several_placements_ = false;
+  Sampling sampling_;
+  PooledVariance variance_;  ///< when sides were chosen
+  float error_ratio_ = 1;
   float largest_ = 0;  ///< the largest TracedSamples::largest
   std::size_t lights_;
   std::vector<V3f> front_light_, back_light_;  ///< weighted sums, the lights of a place together

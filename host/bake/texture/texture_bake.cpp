@@ -52,8 +52,9 @@ class SampledTexels : public SampledSurface {
   }
 
   // A point that is uniform over the parts of all triangles in the texel.
-  [[nodiscard]] SurfaceSample sample(std::size_t i, std::uint32_t index) const override {
-    const auto [u, v] = spread_pair(index, hash_of(hash_, texel(i)));
+  [[nodiscard]] SurfaceSample sample(std::size_t i, std::uint32_t index,
+                                     std::uint32_t sequence) const override {
+    const auto [u, v] = spread_pair(index, hash_of(hash_ + sequence, texel(i)));
     double area = 0;
     for (const std::uint32_t t : triangles(i)) area += double{polygon(i, t).area()};
     double left = u * area;
@@ -143,16 +144,15 @@ bool TextureBake::add(std::uint32_t index, const Placements& placements, BakeTra
   // Neighbouring texels share no samples, so that a variance takes two of them.
   constexpr std::uint32_t kFirst = 2;
   ValueSums sums(parts, options_.sides);
-  SampleRounds rounds(texels, hash, placements, tracing, sums);
+  SampleRounds rounds(texels, hash, placements, tracing, sums, options_.sides);
   if (!rounds.run(round_options(options_, kFirst, placements, false))) return false;
-  sums.choose_sides();
   std::vector<PlaceValue> values = sums.values();
   std::vector<std::vector<V3f>> light;
   if (tracing.light) {
     ValueSums light_sums(parts, options_.sides, tracing.lights);
-    SampleRounds light_rounds(texels, ~hash, placements, tracing, light_sums, &sums);
+    SampleRounds light_rounds(texels, ~hash, placements, tracing, light_sums, options_.sides,
+                              &sums);
     if (!light_rounds.run(round_options(options_, kFirst, placements, true))) return false;
-    light_sums.choose_sides();
     for (const float square : light_sums.squared_errors())
       tracing.statistics.squared_light_errors += double{square};
     for (std::size_t l = 0; l < tracing.lights; ++l) light.push_back(light_sums.light_values(l));

@@ -31,6 +31,10 @@
 #include "files/output_file.hpp"
 #include "render/stopwatch.hpp"
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 namespace dapple {
 namespace {
 
@@ -258,7 +262,18 @@ void check_values_fit(const gltf::SourceFile& file, const Scene& scene, const Ba
   if (options.light) check_channel_spares_lights(channel, scene.lights);
 }
 
+/// Keeps what is freed for what is allocated next. Every batch of samples has arrays of many
+/// megabytes, and the kernel would clear each of their pages again.
+void keep_freed_memory() {
+#ifdef __GLIBC__
+  constexpr int kMost = 1 << 30;
+  mallopt(M_MMAP_THRESHOLD, kMost);
+  mallopt(M_TRIM_THRESHOLD, kMost);
+#endif
+}
+
 void run_bake(const CLI::App& app, const BakeArguments& a) {
+  keep_freed_memory();
   BakeOptions options = to_options(a);
   refuse_options_without_effect(app, options);
   const std::vector<OutputPath> outputs = named_outputs(a, options);
