@@ -1,5 +1,7 @@
 #include "commands/arguments/shared_options.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <numbers>
 
