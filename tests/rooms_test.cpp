@@ -47,6 +47,7 @@ const std::vector<Library> kLibraries{
     {"meshoptimizer",
      std::regex("meshoptimizer\\.h"),
      {"host/scene/gltf/document/compressed_views."}},
+    {"Draco", std::regex("draco/.*"), {"host/scene/gltf/document/draco_mesh."}},
     {"xxHash and zstd", std::regex("xxhash\\.h|zstd\\.h"), {"host/files/"}},
     {"CLI11", std::regex("CLI/.*"), {"host/commands/", "host/main.cpp"}},
 };

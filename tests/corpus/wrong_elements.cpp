@@ -186,11 +186,6 @@ const Damage kDamages[] = {
     {"ExtensionUnknownButRequired",
      [](json& d) { d["extensionsUsed"] = d["extensionsRequired"] = {"ACME_hidden_geometry"}; },
      "requires the extension ACME_hidden_geometry"},
-    {"ExtensionDracoRequired",
-     [](json& d) {
-       d["extensionsUsed"] = d["extensionsRequired"] = {"KHR_draco_mesh_compression"};
-     },
-     "requires the extension KHR_draco_mesh_compression"},
     {"ExtensionLaterMeshoptRequired",
      [](json& d) { d["extensionsUsed"] = d["extensionsRequired"] = {"KHR_meshopt_compression"}; },
      "requires the extension KHR_meshopt_compression"},

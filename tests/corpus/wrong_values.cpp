@@ -80,13 +80,13 @@ const Damage kDamages[] = {
      "mesh 0 primitive 0 POSITION is accessor 0, which is VEC2 of float"},
     {"PrimitiveThatLacksACorner", [](json& d) { d["accessors"][0]["count"] = 2; },
      "mesh 0 primitive 0: 2 indices do not make whole triangles"},
-    {"PrimitiveUnderDracoAlone",
+    {"PrimitiveWhoseDracoDataAreNone",
      [](json& d) {
        d["accessors"][0].erase("bufferView");
        d["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"] = {
            {"bufferView", 0}, {"attributes", {{"POSITION", 0}}}};
      },
-     "mesh 0 primitive 0 exists only as KHR_draco_mesh_compression"},
+     "mesh 0 primitive 0 has data that do not begin as Draco's do"},
     {"IndexCutTo32Bits", [](json& d) { d["nodes"][0]["mesh"] = 4294967296; },
      "node 0: mesh is not an integer"},
     {"NodeOfAnUnknownMesh", [](json& d) { d["nodes"][0]["mesh"] = 1; },

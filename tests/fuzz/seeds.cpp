@@ -16,6 +16,7 @@
 #include "dapple/film.hpp"
 #include "points/point_file.hpp"
 #include "support/files/compressed_gltf.hpp"
+#include "support/files/draco_gltf.hpp"
 #include "support/files/gltf_builder.hpp"
 
 namespace {
@@ -137,6 +138,10 @@ int main(int argc, char** argv) {
     write_scene(folder / "gltf", one.name, one.files);
   write_seed(folder / "gltf" / "compressed",
              dapple::test::compressed(dapple::test::one_triangle()).glb());
+  for (const int method : {draco::MESH_EDGEBREAKER_ENCODING, draco::MESH_SEQUENTIAL_ENCODING})
+    write_seed(
+        folder / "gltf" / fmt::format("draco_{}", method),
+        dapple::test::draco_compressed(dapple::test::one_triangle(), {.method = method}).glb());
   write_images(folder / "image");
   write_webp_images(folder / "image");
   write_radiance_images(folder / "radiance_hdr");

@@ -5,7 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include "scene/gltf/document/extension_names.hpp"
 #include "scene/gltf/line_joints.hpp"
 #include "scene/gltf/topology.hpp"
 #include "scene/gltf/vertices.hpp"
@@ -24,20 +23,6 @@ std::uint64_t max_elements(const Document& document) {
 /// The same limit for sparse values, which are read again for every primitive.
 std::uint64_t max_sparse_values(const Document& document) {
   return (std::uint64_t{1} << 24) + 4 * document.bytes;
-}
-
-/// Throws Error input for a compressed primitive. Some writers also store uncompressed accessors;
-/// dapple then reads those.
-void refuse_compressed(const Document& document, const tinygltf::Primitive& primitive,
-                       const std::string& who) {
-  if (!primitive.extensions.contains(extension::kDraco)) return;
-  const auto& position =
-      document.model.accessors[static_cast<std::size_t>(attribute(primitive, "POSITION"))];
-  if (position.bufferView >= 0 || position.sparse.isSparse) return;
-  fail(document.file,
-       "{} exists only as KHR_draco_mesh_compression, which dapple cannot read; export it "
-       "uncompressed",
-       who);
 }
 
 /// Returns the attributes of a primitive that its material needs. Only triangles use textures.
@@ -170,7 +155,6 @@ std::vector<std::size_t> shown_primitives(const Document& document, const tinygl
   for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
     if (!is_shown(mesh.primitives[p], line_radius, totals)) continue;
     const std::string who = fmt::format("{} primitive {}", label, p);
-    refuse_compressed(document, mesh.primitives[p], who);
     count_work(document, mesh.primitives[p], deformation, who, totals);
     shown.push_back(p);
   }

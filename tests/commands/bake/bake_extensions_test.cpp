@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "dapple/scene.hpp"
+#include "support/files/draco_gltf.hpp"
 #include "support/programs/bake_command.hpp"
 
 namespace dapple {
@@ -11,7 +12,7 @@ namespace {
 using namespace film_test;
 using namespace program_test;
 
-constexpr const char* kDraco = "KHR_draco_mesh_compression";
+using test::kDraco;
 constexpr const char* kVariants = "KHR_materials_variants";
 
 class BakeExtensions : public BakeCommand {
@@ -27,31 +28,79 @@ class BakeExtensions : public BakeCommand {
   }
 };
 
-GltfBuilder compressed_triangle() {
+GltfBuilder compressed_triangle(const test::DracoOptions& options = {}) {
   GltfBuilder builder = rich_triangle();
-  builder.doc["meshes"][0]["primitives"][0]["extensions"][kDraco] = {
-      {"bufferView", builder.add_view(test::Bytes(100))}, {"attributes", {{"POSITION", 0}}}};
-  builder.doc["extensionsUsed"].push_back(kDraco);
-  return builder;
+  json& attributes = builder.doc["meshes"][0]["primitives"][0]["attributes"];
+  attributes["COLOR_0"] = builder.add_accessor(
+      test::Bytes{9, 8, 7, 255, 99, 9, 7, 255, 1, 2, 3, 255}, test::kUint8, "VEC4", true);
+  attributes["NORMAL"] = builder.add_positions({0, 0, 1, 0, 0, 1, 0, 0, 1});
+  return draco_compressed(builder, options);
 }
 
-TEST_F(BakeExtensions, ACompressedCopyOfWhatChangesIsLeftOut) {
+TEST_F(BakeExtensions, CompressedPrimitivesStayCompressedBesideWhatIsBaked) {
   write("in.glb", compressed_triangle().glb());
-  for (const char* to : {"vertex", "texture --size 16"}) {
-    const json after = baked(std::string("--to ") + to);
-    EXPECT_FALSE(after["meshes"][0]["primitives"][0].contains("extensions")) << to;
-    EXPECT_EQ(after["extensionsUsed"], json{"ACME_wind"}) << to;
+  const json before = document("in.glb")["meshes"][0]["primitives"][0];
+  for (const char* output : {"out.glb", "out.gltf"}) {
+    const Outcome run = dapple(std::string("bake in.glb --channel _AO -o ") + output);
+    EXPECT_EQ(run.code, 0) << run.err;
+    const json after = document(output);
+    const json& primitive = after["meshes"][0]["primitives"][0];
+    EXPECT_EQ(primitive["extensions"][kDraco]["attributes"],
+              before["extensions"][kDraco]["attributes"]);
+    EXPECT_EQ(after["extensionsUsed"], document("in.glb")["extensionsUsed"]);
+    const std::size_t ao = primitive["attributes"]["_AO"];
+    EXPECT_TRUE(after["accessors"][ao].contains("bufferView")) << output;
+    EXPECT_EQ(after["accessors"][ao]["count"], 3);
   }
   EXPECT_EQ(baked("--to instance")["meshes"], document("in.glb")["meshes"]);
 }
 
-TEST_F(BakeExtensions, CompressedMeshesThatAreNotBakedStayCompressed) {
+TEST_F(BakeExtensions, WhatABakeReplacesIsCompressedNoLonger) {
+  for (const bool with_fallback : {false, true}) {
+    write("in.glb", compressed_triangle({.with_fallback = with_fallback}).glb());
+    const std::map<std::string, std::string> cases = {
+        {"", "COLOR_0"}, {"--channel _AO --passes ao,bent --bent-channel NORMAL", "NORMAL"}};
+    for (const auto& [arguments, name] : cases) {
+      const json after = baked(arguments);
+      const json& primitive = after["meshes"][0]["primitives"][0];
+      json left = document("in.glb")["meshes"][0]["primitives"][0]["extensions"][kDraco];
+      left["attributes"].erase(name);
+      EXPECT_EQ(primitive["extensions"][kDraco]["attributes"], left["attributes"]) << name;
+      const std::size_t replaced = primitive["attributes"][name];
+      EXPECT_TRUE(after["accessors"][replaced].contains("bufferView")) << name;
+    }
+  }
+}
+
+// The extension's schema wants one attribute.
+TEST_F(BakeExtensions, APrimitiveWhoseOnlyCompressedAttributeIsReplacedIsPlain) {
+  const GltfBuilder in =
+      compressed_triangle({.method = draco::MESH_SEQUENTIAL_ENCODING,
+                           .left_plain = {"POSITION", "NORMAL", "_TEMPERATURE"}});
+  write("in.glb", in.glb());
+  const json after = baked("");
+  EXPECT_FALSE(after["meshes"][0]["primitives"][0].contains("extensions"));
+  EXPECT_EQ(after["extensionsUsed"], json{"ACME_wind"});
+  EXPECT_FALSE(after.contains("extensionsRequired"));
+  EXPECT_EQ(test::world_triangles(load_gltf(path("out.glb"))), test::world_triangles(in.load()));
+}
+
+TEST_F(BakeExtensions, PrimitivesWithNewVerticesAreCompressedNoLonger) {
+  write("in.glb", compressed_triangle().glb());
+  const json after = baked("--to texture --size 16");
+  EXPECT_FALSE(after["meshes"][0]["primitives"][0].contains("extensions"));
+  EXPECT_EQ(after["extensionsUsed"], json{"ACME_wind"});
+  EXPECT_FALSE(after.contains("extensionsRequired"));
+}
+
+TEST_F(BakeExtensions, CompressedMeshesThatAreNotBakedStayAsTheyAre) {
   GltfBuilder builder = compressed_triangle();
   builder.doc["meshes"].push_back(builder.doc["meshes"][0]);  // no node shows it
   write("in.glb", builder.glb());
-  const json after = baked("");
+  const json after = baked("--to texture --size 16");
   EXPECT_FALSE(after["meshes"][0]["primitives"][0].contains("extensions"));
-  EXPECT_EQ(after["meshes"][1], builder.doc["meshes"][1]);
+  EXPECT_EQ(after["meshes"][1]["primitives"][0]["extensions"][kDraco]["attributes"],
+            builder.doc["meshes"][1]["primitives"][0]["extensions"][kDraco]["attributes"]);
   EXPECT_EQ(after["extensionsUsed"], builder.doc["extensionsUsed"]);
 }
 

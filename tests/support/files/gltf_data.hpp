@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "support/files/draco_decoding.hpp"
 #include "support/files/film_files.hpp"
 
 namespace dapple::test {
@@ -44,6 +45,10 @@ class GltfData {
     for (const json& view : doc.value("bufferViews", json::array()))
       if (view.contains("extensions"))
         decompress(view, view["extensions"]["EXT_meshopt_compression"]);
+    for (const json& mesh : doc.value("meshes", json::array()))
+      for (const json& primitive : mesh.at("primitives"))
+        if (primitive.value("extensions", json::object()).contains("KHR_draco_mesh_compression"))
+          decode_primitive(primitive, primitive["extensions"]["KHR_draco_mesh_compression"]);
   }
 
   [[nodiscard]] const json& accessor(const json& index) const {
@@ -55,7 +60,11 @@ class GltfData {
     const json& a = accessor(index);
     const std::size_t n = components(a), count = a.at("count");
     std::vector<double> values(n * count, 0.0);
-    if (a.contains("bufferView"))
+    if (const auto decoded = decoded_.find(at(index)); decoded != decoded_.end())
+      for (std::size_t i = 0; i < values.size(); ++i)
+        values[i] = number(a["componentType"],
+                           reinterpret_cast<const char*>(&decoded->second.at(i * size_of(a))));
+    else if (a.contains("bufferView"))
       for (std::size_t i = 0; i < values.size(); ++i)
         values[i] =
             number(a["componentType"], element(a, i / n, n * size_of(a)) + i % n * size_of(a));
@@ -130,6 +139,30 @@ class GltfData {
               0);
   }
 
+  /// The compressed data stand in for those of the accessors, which may have none.
+  void decode_primitive(const json& primitive, const json& extension) {
+    const json& view = doc["bufferViews"].at(at(extension.at("bufferView")));
+    const std::string& buffer = buffers_.at(at(view["buffer"]));
+    const std::size_t begin = view.value("byteOffset", std::size_t{0});
+    const std::size_t size = view["byteLength"];
+    ASSERT_LE(begin + size, buffer.size());
+    const DracoDecoding mesh(buffer.data() + begin, size);
+    ASSERT_FALSE(extension.at("attributes").empty());
+    for (const auto& [name, id] : extension["attributes"].items()) {
+      const json& index = primitive["attributes"].at(name);
+      EXPECT_EQ(accessor(index).at("count"), mesh.vertex_count()) << name;
+      decoded_[at(index)] = mesh.values(id, accessor(index)["componentType"]);
+    }
+    if (!primitive.contains("indices") || primitive.value("mode", 4) == 5) return;
+    const json& a = accessor(primitive["indices"]);
+    std::vector<std::uint8_t>& bytes = decoded_[at(primitive["indices"])];
+    const std::vector<std::uint32_t> indices = mesh.indices();
+    EXPECT_EQ(a.at("count"), indices.size());
+    for (const std::uint32_t i : indices)
+      for (std::size_t byte = 0; byte < size_of(a); ++byte)
+        bytes.push_back(static_cast<std::uint8_t>(i >> 8 * byte));
+  }
+
   [[nodiscard]] const char* in_view(const json& index, std::size_t offset, std::size_t size) const {
     const json& view = doc["bufferViews"].at(at(index));
     if (offset + size > view.at("byteLength").get<std::size_t>())
@@ -183,6 +216,7 @@ class GltfData {
   }
 
   std::vector<std::string> buffers_;
+  std::map<std::size_t, std::vector<std::uint8_t>> decoded_;  ///< by accessor
 };
 
 }  // namespace dapple::test

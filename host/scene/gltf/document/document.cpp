@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "scene/gltf/document/compressed_primitives.hpp"
 #include "scene/gltf/document/compressed_views.hpp"
 #include "scene/gltf/document/container.hpp"
 #include "scene/gltf/document/element_check.hpp"
@@ -260,6 +261,7 @@ Document load_document(const std::string& path, bool allow_outside) {
   decode_compressed_views(document, elements(root, "bufferViews"), fallbacks);
   find_images(document, take(root, "images"));
   parse_model(document, root);
+  decode_compressed_primitives(document);
   validate(document);
   return document;
 }

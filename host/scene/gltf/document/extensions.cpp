@@ -12,11 +12,16 @@ namespace dapple::gltf {
 namespace {
 
 /// Extensions that dapple reads, as far as they affect occlusion and light.
-constexpr std::array<std::string_view, 8> kRead = {
-    extension::kInstancing,       extension::kLights,
-    extension::kEmissiveStrength, extension::kSpecularGlossiness,
-    extension::kQuantization,     extension::kTextureTransform,
-    extension::kMeshopt,          extension::kWebp,
+constexpr std::array<std::string_view, 9> kRead = {
+    extension::kInstancing,
+    extension::kLights,
+    extension::kEmissiveStrength,
+    extension::kSpecularGlossiness,
+    extension::kQuantization,
+    extension::kTextureTransform,
+    extension::kMeshopt,
+    extension::kWebp,
+    extension::kDraco,
 };
 
 /// Extensions that dapple ignores: they change colour, gloss or metadata, but not opacity.

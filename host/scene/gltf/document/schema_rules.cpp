@@ -144,12 +144,16 @@ constexpr Rule kMaterial[] = {
     object("occlusionTexture", kTextureInfo), object("pbrMetallicRoughness", kMetallicRoughness),
     object("extensions", kMaterialExtensions)};
 
+constexpr Rule kDraco[] = {required({"bufferView", Kind::index}),
+                           required({"attributes", Kind::index_map})};
+constexpr Rule kPrimitiveExtensions[] = {object(extension::kDraco, kDraco)};
 constexpr int kModes[] = {0, 1, 2, 3, 4, 5, 6};
 constexpr Rule kPrimitive[] = {required({"attributes", Kind::index_map}),
                                {"indices", Kind::index},
                                {"material", Kind::index},
                                code("mode", kModes),
-                               {"targets", Kind::index_maps}};
+                               {"targets", Kind::index_maps},
+                               object("extensions", kPrimitiveExtensions)};
 constexpr Rule kMesh[] = {required(objects("primitives", kPrimitive, "primitive", kMany)),
                           {"weights", Kind::numbers}};
 

@@ -8,6 +8,7 @@
 
 #include "scene/gltf/document/extension_names.hpp"
 #include "scene/gltf/document/found.hpp"
+#include "scene/gltf/edit/compressed_primitive.hpp"
 #include "scene/gltf/edit/extension_use.hpp"
 #include "scene/message.hpp"
 
@@ -81,7 +82,7 @@ void add_attributes(Editor& editor, const std::vector<NewAttribute>& attributes)
     if (is_new) at->second = add_accessor(editor, attribute, true);
     Json& primitive = editor.json()["meshes"][attribute.mesh]["primitives"][attribute.primitive];
     primitive["attributes"][attribute.name] = at->second;
-    removed |= remove_extension(primitive, extension::kDraco);  // it has the old values
+    removed |= leave_out_of_compressed(editor, attribute.mesh, attribute.primitive, attribute.name);
   }
   if (removed) unlist_unused_extension(editor.json(), extension::kDraco);
 }

@@ -10,12 +10,13 @@
 
 #include "scene/gltf/document/accessor.hpp"
 #include "scene/gltf/document/extension_names.hpp"
+#include "scene/gltf/edit/compressed_primitive.hpp"
 #include "scene/gltf/edit/material_use.hpp"
 
 namespace dapple::gltf {
 namespace {
 
-constexpr int kFloat = 5126, kUnsignedShort = 5123, kUnsignedInt = 5125;
+constexpr int kFloat = 5126;
 constexpr int kClampToEdge = 33071;
 
 template <class T>
@@ -24,9 +25,10 @@ std::string bytes_of(const std::vector<T>& values) {
 }
 
 /// Copies of the elements `source` of an accessor, stored as there, with bounds if it has some.
-std::size_t copy_elements(Editor& editor, std::size_t accessor,
+/// `elements`: the accessor of the document that has them.
+std::size_t copy_elements(Editor& editor, std::size_t accessor, int elements,
                           const std::vector<std::uint32_t>& source, bool with_bounds) {
-  const AccessorReader reader(editor.content().document, static_cast<int>(accessor));
+  const AccessorReader reader(editor.content().document, elements);
   const std::size_t size = reader.element_bytes(), stride = (size + 3) / 4 * 4;
   std::string bytes(stride * source.size(), '\0');
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -72,32 +74,21 @@ void add_uv_sets(Editor& editor, const TexturedPrimitive& textured, Json& attrib
   attributes[fmt::format("TEXCOORD_{}", textured.uv_set)] = add_uvs(editor, textured.uvs);
 }
 
-std::size_t add_indices(Editor& editor, const std::vector<std::uint32_t>& indices,
-                        std::size_t vertices) {
-  const bool is_short = vertices < 0xffff;
-  const std::vector<std::uint16_t> shorts =
-      is_short ? std::vector<std::uint16_t>(indices.begin(), indices.end())
-               : std::vector<std::uint16_t>{};
-  const std::size_t view =
-      editor.add_view(is_short ? bytes_of(shorts) : bytes_of(indices), 0, kElementArrayBuffer);
-  return editor.push("accessors", {{"bufferView", view},
-                                   {"componentType", is_short ? kUnsignedShort : kUnsignedInt},
-                                   {"count", indices.size()},
-                                   {"type", "SCALAR"}});
-}
-
 /// Returns whether the old ones were also compressed.
 bool replace_vertices(Editor& editor, const TexturedPrimitive& textured) {
   // A copy: push() may move the document's arrays.
   Json primitive = editor.json()["meshes"][textured.mesh]["primitives"][textured.primitive];
-  const auto copy_all = [&](Json& attributes) {
-    for (auto& [name, accessor] : attributes.items())
-      accessor =
-          copy_elements(editor, accessor.get<std::size_t>(), textured.source, name == "POSITION");
+  const auto copy = [&](Json& accessor, int elements, const std::string& name) {
+    accessor = copy_elements(editor, accessor.get<std::size_t>(), elements, textured.source,
+                             name == "POSITION");
   };
-  copy_all(primitive["attributes"]);
+  for (auto& [name, accessor] : primitive["attributes"].items())
+    copy(accessor,
+         decoded_accessor(editor, textured.mesh, textured.primitive, name, accessor.get<int>()),
+         name);
   if (primitive.contains("targets"))
-    for (Json& target : primitive["targets"]) copy_all(target);
+    for (Json& target : primitive["targets"])
+      for (auto& [name, accessor] : target.items()) copy(accessor, accessor.get<int>(), name);
   add_uv_sets(editor, textured, primitive["attributes"]);
   primitive["indices"] = add_indices(editor, textured.indices, textured.source.size());
   primitive.erase("mode");  // triangles
