@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "dapple/error.hpp"
@@ -69,6 +70,9 @@ BakeCheckpoint::BakeCheckpoint(const RenderControl& control, Settings settings)
 
 void BakeCheckpoint::read() {
   const std::string& path = control_.resume;
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored))
+    throw Error(ErrorKind::input, "--resume " + path + ": there is no such file");
   try {
     const SealedFile file = open_sealed_file(path, kKind);
     const std::span<const char> text = file.values<char>(0);

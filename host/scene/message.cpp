@@ -48,7 +48,7 @@ std::string grouped(std::uint64_t value) {
 
 std::string element(std::string_view kind, std::size_t index, std::string_view name) {
   if (name.empty()) return fmt::format("{} {}", kind, index);
-  return fmt::format("{} {} (\"{}\")", kind, index, excerpt(name));
+  return fmt::format("{} {} (\"{}\")", kind, index, one_line(excerpt(name)));
 }
 
 void fail_with(const std::string& file, const std::string& message) {

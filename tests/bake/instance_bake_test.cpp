@@ -95,6 +95,22 @@ double mean_of_brighter_sides(const Scene& scene, const Instance& instance, int 
   return sum / count;
 }
 
+// The squares of their areas are beyond the range of floats.
+TEST(InstanceBake, ValuesOfExtremeScalesAreNumbers) {
+  for (const float scale : {1e-13f, 1e13f}) {
+    Scene scene;
+    scene.materials.resize(1);
+    place(scene, square_mesh(scale > 1 ? 1e-8f : 1e8f, 0, 2, 0));
+    scene.instances[0].to_world.setScale(V3f(scale, scale, 2 * scale));
+    for (const float target : {0.0f, 0.05f}) {
+      BakeOptions options = of_instances(target);
+      options.rays = 64;
+      for (const float ao : bake(scene, options).instance_ao)
+        EXPECT_TRUE(ao >= 0 && ao <= 1) << scale << " " << ao;
+    }
+  }
+}
+
 TEST(InstanceBake, ValuesAreMeansOverTheSurface) {
   const Scene scene = grove();
   const BakeResult result = bake(scene, of_instances(0.01f));

@@ -11,15 +11,18 @@ namespace dapple {
 
 class PlacedAreas {
  public:
+  /// A matrix that makes all areas zero, or is not finite, counts as even.
   explicit PlacedAreas(const M44f& to_world) {
-    std::array<V3f, 3> axis;
+    std::array<Imath::V3d, 3> axis;
     for (int i = 0; i < 3; ++i)
       axis[static_cast<std::size_t>(i)] = {to_world[i][0], to_world[i][1], to_world[i][2]};
-    cofactors_ = {axis[1].cross(axis[2]), axis[2].cross(axis[0]), axis[0].cross(axis[1])};
-    const float mean = std::sqrt(
-        (cofactors_[0].length2() + cofactors_[1].length2() + cofactors_[2].length2()) / 3);
-    for (V3f& cofactor : cofactors_) cofactor /= mean;
+    const std::array<Imath::V3d, 3> cofactors{axis[1].cross(axis[2]), axis[2].cross(axis[0]),
+                                              axis[0].cross(axis[1])};
+    const double mean =
+        std::sqrt((cofactors[0].length2() + cofactors[1].length2() + cofactors[2].length2()) / 3);
+    if (!(mean > 0) || !std::isfinite(mean)) return;
     is_even_ = true;
+    for (std::size_t i = 0; i < 3; ++i) cofactors_[i] = V3f(cofactors[i] / mean);
     for (std::size_t i = 0; i < 3; ++i)
       for (std::size_t k = 0; k < 3; ++k)
         is_even_ = is_even_ &&
@@ -41,7 +44,7 @@ class PlacedAreas {
   static constexpr float kEven = 1e-4f;  // roundings of rotations
 
   std::array<V3f, 3> cofactors_;
-  bool is_even_;
+  bool is_even_ = true;
 };
 
 }  // namespace dapple

@@ -83,7 +83,9 @@ std::vector<OutputPath> side_outputs(const gltf::SourceFile& file, const BakeArg
   std::vector<std::string> new_files = editor.new_side_files();
   if (options.texture && a.output.ends_with(".gltf"))
     new_files.push_back(editor.image_path(gltf::kOcclusionSuffix));
-  check_new_sides(a.output, new_files);
+  std::vector<std::string> unknown = new_files;
+  if (needs_exr(options)) unknown.push_back(exr_path(a.output));
+  check_new_sides(a.output, unknown);
   for (const std::string& path : new_files) sides.push_back({"--output", path});
   for (const auto& [from, to] : editor.side_copies()) sides.push_back({"--output", to});
   return sides;
@@ -170,6 +172,15 @@ void write_preview(const Scene& scene, const BakeResult& result, const std::stri
       path, encode_png(draw_preview(scene, result, camera, kPreviewSize, kPreviewSize), path));
 }
 
+/// Of chunks that only a GLB has; empty: there are none.
+std::string lost_note(std::size_t bytes) {
+  if (bytes == 0) return {};
+  return fmt::format(
+      "{} bytes of GLB chunks that are neither JSON nor BIN are left out: a .gltf has none; "
+      "-o FILE.glb keeps them",
+      bytes);
+}
+
 /// Writes the file with the baked values and the EXR of a texture. Neither gets its name before
 /// both are written. Returns notes, some of them empty.
 std::vector<std::string> write_baked(const gltf::SourceFile& file, const Scene& scene,
@@ -195,6 +206,7 @@ std::vector<std::string> write_baked(const gltf::SourceFile& file, const Scene& 
   if (needs_exr(options))
     write_baked_exr(result, scene.source, options, files.add(exr_path(a.output)));
   files.commit();
+  notes.push_back(lost_note(editor.lost_bytes()));
   return notes;
 }
 

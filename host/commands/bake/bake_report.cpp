@@ -8,6 +8,7 @@
 #include "commands/statistics_text.hpp"
 #include "commands/tell.hpp"
 #include "files/output_file.hpp"
+#include "scene/message.hpp"
 
 namespace dapple {
 namespace {
@@ -108,7 +109,7 @@ void write_statistics(const BakeResult& result, const BakeSeconds& seconds,
 }
 
 void print_summary(const BakeStatistics& s, const BakeSeconds& seconds, const std::string& output) {
-  for (const std::string& note : s.notes) tell("note: {}\n", note);
+  for (const std::string& note : s.notes) tell("note: {}\n", one_line(note));
   put("{} triangles, {}, {} rays from {} points ({:.1f} million rays per second)\n"
       "seconds: load {:.2f}, prepare {:.2f}, build {:.2f}, upload {:.2f}, kernel build {:.2f}, "
       "trace {:.2f}, write {:.2f}, total {:.2f}\n",

@@ -14,6 +14,7 @@
 
 #include "dapple/error.hpp"
 #include "files/output_file.hpp"
+#include "film/exr/exr_output.hpp"
 #include "scene/gltf/document/file_uris.hpp"
 #include "scene/gltf/document/uri.hpp"
 
@@ -76,6 +77,18 @@ std::set<fs::path> files_of(const fs::path& output) {
   return files;
 }
 
+/// Whether an earlier bake wrote the file: its metadata tell the rays of a value.
+bool is_baked_exr(const std::string& path) {
+  if (!path.ends_with(".exr")) return false;
+  try {
+    const auto settings = read_exr_metadata(path).settings;
+    return std::any_of(settings.begin(), settings.end(),
+                       [](const auto& setting) { return setting.first == "rays"; });
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 /// Throws Error usage if the file cannot be written. Folders below `parent` are not there yet.
 void check_target(const fs::path& to, const fs::path& parent) {
   std::error_code ignored;
@@ -116,14 +129,15 @@ void check_side_copies(const std::string& output,
 
 void check_new_sides(const std::string& output, const std::vector<std::string>& paths) {
   std::error_code ignored;
-  if (fs::exists(output, ignored)) return;  // they are those of an earlier output
   for (const std::string& path : paths) {
-    if (fs::exists(path, ignored))
-      throw Error(ErrorKind::usage,
-                  fmt::format("--output {}: {} is written beside it, but another file of that name "
-                              "is there; write to another folder, or a .glb, which embeds all, or "
-                              "remove what is there",
-                              output, path));
+    if (!fs::exists(path, ignored) || is_baked_exr(path) ||
+        files_of(output).contains(fs::path(path).lexically_normal()))
+      continue;
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("--output {}: {} is written beside it, but another file of that name "
+                    "is there; write to another folder, {}or remove what is there",
+                    output, path, path.ends_with(".exr") ? "" : "or a .glb, which embeds all, "));
   }
 }
 

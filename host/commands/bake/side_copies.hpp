@@ -15,7 +15,8 @@ namespace dapple {
 void check_side_copies(const std::string& output,
                        const std::vector<std::pair<std::string, std::string>>& copies);
 
-/// The same for new files beside the output, whatever they would replace.
+/// The same for new files beside the output: other files than those that an earlier bake wrote
+/// there are not replaced, whatever they hold.
 void check_new_sides(const std::string& output, const std::vector<std::string>& paths);
 
 }  // namespace dapple

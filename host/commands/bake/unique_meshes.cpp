@@ -37,6 +37,9 @@ class PlacementNodes {
     return split->second.at(placements_[{node, mesh}]++);
   }
 
+  /// After the last placement.
+  void finish() { file_.finish_splits(split_); }
+
   /// Nodes whose instances lost the numbers of their features.
   [[nodiscard]] int without_features() const { return without_features_; }
 
@@ -97,6 +100,7 @@ void make_meshes_unique(gltf::SourceFile& file, Scene& scene) {
     kept[{placed, mesh}] = instance.mesh;
     nodes_with_instances.insert(placed);
   }
+  nodes.finish();
   remove_left_out(scene);
   if (!kept.empty())
     scene.warnings.push_back(fmt::format(

@@ -22,4 +22,7 @@ void write_exr(const Film& film, const std::string& path, const ExrFormat& forma
 /// The same for a file that gets its name later. Throws Error usage or failed.
 void write_exr(const Film& film, PendingFile& file, const ExrFormat& format, Durable durable);
 
+/// The metadata of a file that write_exr() wrote, without reading its pixels. Throws Error input.
+FilmMetadata read_exr_metadata(const std::string& path);
+
 }  // namespace dapple

@@ -219,4 +219,8 @@ Film read_exr(const std::string& path) {
   return film;
 }
 
+FilmMetadata read_exr_metadata(const std::string& path) {
+  return film_without_pixels(ExrFile(path).header()).metadata;
+}
+
 }  // namespace dapple

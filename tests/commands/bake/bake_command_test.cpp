@@ -281,7 +281,8 @@ TEST_F(BakeCommand, ABakeGoesOnFromItsCheckpoint) {
   EXPECT_NE(resumed.err.find("went on from c.ckpt"), std::string::npos) << resumed.err;
   EXPECT_EQ(bytes_of(path("a.glb")), bytes_of(path("b.glb")));
   expect_failure(dapple(bake + "-o c.glb --seed 3 --resume c.ckpt"), 2, "--seed");
-  expect_failure(dapple(bake + "-o c.ckpt.glb --resume none.ckpt"), 1, "none.ckpt");
+  expect_failure(dapple(bake + "-o c.ckpt.glb --resume none.ckpt"), 3,
+                 "--resume none.ckpt: there is no such file");
   expect_failure(dapple(bake + "-o c.glb --checkpoint c.glb"), 2, "--checkpoint");
   EXPECT_EQ(files_in_folder(), 3u);
 }

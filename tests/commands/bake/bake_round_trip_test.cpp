@@ -230,6 +230,9 @@ TEST_F(BakeRoundTrip, KeepsChunksOfOtherTypes) {
   std::ofstream(path("in.glb"), std::ios::binary) << glb;
   ASSERT_EQ(dapple("bake in.glb -o out.glb --rays 8 -q --channel _AO").code, 0);
   EXPECT_TRUE(bytes_of(path("out.glb")).ends_with(chunks));
+  const Outcome text = dapple("bake in.glb -o out.gltf --rays 8");
+  EXPECT_EQ(text.code, 0) << text.err;
+  EXPECT_NE(text.err.find("note: 28 bytes of GLB chunks"), std::string::npos) << text.err;
   EXPECT_EQ(bits_of(picture("out.glb").find("ao.R")->pixels),
             bits_of(picture("in.glb").find("ao.R")->pixels));
   // The rules that a fixture checks know no such chunks.

@@ -61,6 +61,36 @@ TEST_F(BakeSideFiles, OfAnotherAssetAreNotReplacedAndThoseOfAnEarlierBakeAre) {
     EXPECT_TRUE(first.contains(file)) << file;
 }
 
+// An earlier output is there, which does not name them.
+TEST_F(BakeSideFiles, OfAnotherAssetAreNotReplacedBesideAnOlderOutput) {
+  write_tree(rich_triangle());
+  const std::string bake =
+      "bake in/tree.gltf -o out/tree.gltf --to texture --size 16 --uv own --rays 8 "
+      "--passes ao,bent -q";
+  const std::string older = R"({"asset": {"version": "2.0"}})";
+  write_bytes(path("out/tree.gltf"), older);
+  for (const std::string foreign : {"tree_ao.png", "tree_baked.bin", "tree_baked.exr"}) {
+    SCOPED_TRACE(foreign);
+    write_bytes(path("out/" + foreign), "of another asset");
+    expect_failure(dapple(bake), 2, "out/" + foreign + " is written beside it");
+    EXPECT_EQ(bytes_of(path("out/" + foreign)), "of another asset");
+    EXPECT_EQ(bytes_of(path("out/tree.gltf")), older);
+    fs::remove(path("out/" + foreign));
+  }
+}
+
+TEST_F(BakeSideFiles, ThePictureOfARenderIsNotReplacedAndTheExrOfABakeIs) {
+  write_tree(rich_triangle());
+  const std::string bake =
+      "bake in/tree.gltf -o out/tree.glb --to texture --size 16 --rays 8 --passes ao,bent -q";
+  ASSERT_EQ(dapple("render in/tree.gltf -o out/tree_baked.exr --width 8 --height 8 -q").code, 0);
+  const Outcome refused = dapple(bake);
+  expect_failure(refused, 2, "out/tree_baked.exr is written beside it");
+  EXPECT_EQ(refused.err.find("or a .glb"), std::string::npos) << refused.err;
+  fs::remove(path("out/tree_baked.exr"));
+  for (const int time : {1, 2}) EXPECT_EQ(dapple(bake).code, 0) << time;
+}
+
 /// A triangle with files that extensions name, and strings that are no such names.
 GltfBuilder triangle_with_sounds() {
   GltfBuilder builder = rich_triangle();

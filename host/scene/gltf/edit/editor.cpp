@@ -100,6 +100,10 @@ void Editor::write(PendingFiles& files) {
   files.add(out_, text + "\n");
 }
 
+std::size_t Editor::lost_bytes() const {
+  return is_glb_out() ? 0 : content().container.others.size();
+}
+
 // It is the last one, and nothing refers to it.
 void Editor::remove_buffer() {
   Json& buffers = json_["buffers"];

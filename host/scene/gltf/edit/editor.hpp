@@ -32,6 +32,9 @@ class Editor {
   /// copied there at once, one after the other, unless they are there already (side_copies()).
   void write(PendingFiles& files);
 
+  /// Bytes of chunks of a GLB that `out` cannot have: those of other types than JSON and BIN.
+  [[nodiscard]] std::size_t lost_bytes() const;
+
   /// NAME`suffix`.png beside `out`, or with a number if the source has an image of that name.
   [[nodiscard]] std::string image_path(const std::string& suffix) const;
 

@@ -89,20 +89,27 @@ bool has_finite_place(const Json& node) {
   return true;
 }
 
-/// Channels that animate the weights of a node animate those of `nodes` instead; -1: none.
-void animate_instead(Json& json, std::uint32_t node, const std::vector<int>& nodes) {
+/// What nodes lose that are split.
+constexpr const char* kSplitExtensions[] = {extension::kInstancing, extension::kInstanceFeatures};
+
+/// Channels that animate the weights of a node which was split animate those of its `parts`
+/// instead; -1: none.
+void animate_parts(Json& json, const std::map<int, std::vector<int>>& parts) {
   if (!json.contains("animations")) return;
   for (Json& animation : json["animations"]) {
     Json channels = Json::array();
     for (const Json& channel : animation["channels"]) {
       const Json target = channel.value("target", Json::object());
-      const bool moves = target.value("path", "") == "weights" && target.contains("node") &&
-                         target["node"] == node;
-      if (!moves) channels.push_back(channel);
-      for (const int instead : nodes) {
-        if (!moves || instead < 0) continue;
+      const bool is_of_weights = target.value("path", "") == "weights" && target.contains("node");
+      const auto split = is_of_weights ? parts.find(target["node"].get<int>()) : parts.end();
+      if (split == parts.end()) {
         channels.push_back(channel);
-        channels.back()["target"]["node"] = instead;
+        continue;
+      }
+      for (const int part : split->second) {
+        if (part < 0) continue;
+        channels.push_back(channel);
+        channels.back()["target"]["node"] = part;
       }
     }
     animation["channels"] = std::move(channels);
@@ -180,12 +187,14 @@ std::vector<int> SourceFile::split_gpu_instances(std::uint32_t node) {
     nodes.push_back(std::move(child));
   }
   for (const char* key : {"mesh", "skin", "weights"}) nodes[node].erase(key);
-  constexpr const char* kExtensions[] = {extension::kInstancing, extension::kInstanceFeatures};
-  for (const char* name : kExtensions) remove_extension(nodes[node], name);
-  // These may erase a key of the file: `nodes` does not refer to its value any more.
-  for (const char* name : kExtensions) unlist_unused_extension(content->json, name);
-  animate_instead(content->json, node, made);
+  for (const char* name : kSplitExtensions) remove_extension(nodes[node], name);
   return made;
+}
+
+void SourceFile::finish_splits(const std::map<int, std::vector<int>>& parts) {
+  if (parts.empty()) return;
+  for (const char* name : kSplitExtensions) unlist_unused_extension(content->json, name);
+  animate_parts(content->json, parts);
 }
 
 PrimitiveColors SourceFile::colors(std::uint32_t mesh, std::uint32_t primitive) const {

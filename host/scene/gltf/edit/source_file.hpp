@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -64,10 +65,14 @@ struct SourceFile {
   [[nodiscard]] bool has_skin(std::uint32_t node) const;
   [[nodiscard]] bool has_gpu_instances(std::uint32_t node) const;
   [[nodiscard]] bool has_instance_features(std::uint32_t node) const;
-  /// Replaces them by child nodes with the same mesh, which the animations of its weights move; the
-  /// extension that numbers instances by their features goes. Returns the index of each one's node,
-  /// in order; -1 for an instance whose place is not finite, which gets none.
+  /// Replaces them by child nodes with the same mesh; the extension that numbers instances by their
+  /// features goes. Returns the index of each one's node, in order; -1 for an instance whose place
+  /// is not finite, which gets none. finish_splits() must follow.
   std::vector<int> split_gpu_instances(std::uint32_t node);
+  /// Once, after all nodes are split: animations of their weights move the child nodes, and
+  /// extensions that nothing uses any more are not listed. `parts`: what split_gpu_instances()
+  /// returned, by node.
+  void finish_splits(const std::map<int, std::vector<int>>& parts);
 
   struct Content;
   Content* content;
