@@ -42,8 +42,20 @@ PooledVariance& PooledVariance::operator+=(const PooledVariance& other) {
   return *this;
 }
 
+// Variances are of means over many places: their coefficients are made once.
 void PooledVariance::pool() {
-  for (std::size_t i = 0; i < of_interval_.size(); ++i) around_[i] = around(i);
+  // A few samples may be equal by chance. So the variance of rays that each find everything or
+  // nothing counts as much as some samples.
+  const double all_freedom = all_.freedom + kRayFreedom;
+  const double of_all = all_.squares / all_freedom;
+  const double of_rays = double{scale_ * scale_} * of_rays_ * kRayFreedom / all_freedom;
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    const Pool pool = several_placements_ ? Pool{} : around(i);
+    const double freedom = pool.freedom + double{kPooledFreedom};
+    const double share_of_all = double{kPooledFreedom} / freedom;
+    lines_[i] = {static_cast<float>(pool.squares / freedom + share_of_all * of_all),
+                 static_cast<float>(share_of_all * of_rays)};
+  }
 }
 
 float PooledVariance::of(const SideSums& side) const {
@@ -71,16 +83,11 @@ PooledVariance::Pool PooledVariance::around(std::size_t interval) const {
   return sum;
 }
 
+// The value is uncertain, too: hence the clamp.
 float PooledVariance::pooled(float value) const {
-  // A few samples may be equal by chance. So the variance of rays that each find everything or
-  // nothing counts as much as some samples. The value is as uncertain: hence the clamp.
-  const double part = std::clamp(double{value / scale_}, 0.1, 0.9);
-  const double of_rays = double{scale_ * scale_} * part * (1 - part) * of_rays_;
-  const double all = (all_.squares + kRayFreedom * of_rays) / (all_.freedom + kRayFreedom);
-  if (several_placements_) return static_cast<float>(all);
-  const Pool& pool = around_[interval(value)];
-  return static_cast<float>((pool.squares + double{kPooledFreedom} * all) /
-                            (pool.freedom + double{kPooledFreedom}));
+  const float part = std::clamp(value / scale_, 0.1f, 0.9f);
+  const Line& line = lines_[interval(value)];
+  return line.of_samples + line.of_rays * (part * (1 - part));
 }
 
 }  // namespace dapple

@@ -42,6 +42,11 @@ class PooledVariance {
     }
   };
 
+  /// of_samples + of_rays p (1 - p), where p is the share of rays that find nothing.
+  struct Line {
+    float of_samples = 0, of_rays = 0;
+  };
+
   [[nodiscard]] std::size_t interval(float value) const;
   [[nodiscard]] Pool around(std::size_t interval) const;
   [[nodiscard]] float pooled(float value) const;
@@ -50,8 +55,8 @@ class PooledVariance {
   double of_rays_;
   bool several_placements_;
   std::array<Pool, kIntervals> of_interval_;
-  std::array<Pool, kIntervals> around_;  ///< of each interval, its neighbours included
   Pool all_;
+  std::array<Line, kIntervals> lines_;  ///< of each interval, its neighbours included
 };
 
 }  // namespace dapple
