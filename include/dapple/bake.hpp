@@ -43,7 +43,7 @@ struct BakeOptions {
   int light_rays = 8;  ///< per light, for each sample and side, [1, 4096]
   /// Standard error of each AO value to aim at, [0,1], and of the brightness of all lights
   /// together, relative to the largest unoccluded one; 0: `rays` for every value.
-  float target_error = 0.035f;
+  float target_error = 0.03f;
   /// Of each triangle (at_vertices: vertex; texture: texel; instances: instance) and side, [8,
   /// 65536]; with a target, at most. Without one, they are divided over samples of eight or more:
   /// up to 64, or 16 for each placement if these are more. Lights have as many samples of

@@ -50,6 +50,40 @@ TEST(ValueSums, APlaceWithSamplesOfOneSideHasTheirMean) {
   }
 }
 
+TEST(ValueSums, PlacesOfACardDifferByTheirContrast) {
+  Samples samples;
+  for (const auto& [place, value] : {std::pair{0u, 0.2f}, {1u, 0.4f}, {2u, 0.9f}})
+    for (int i = 0; i < 8; ++i) samples.add(place, value, -1);
+  for (const bool is_card : {false, true}) {
+    SmallParts parts = one_part(3);
+    if (!is_card) parts = {std::vector<std::uint32_t>(3, SmallParts::kLarge), 0};
+    ValueSums sums(parts, BakeSides::front);
+    samples.add_to(sums);
+    sums.choose_sides();
+    EXPECT_NEAR(sums.values()[2].ao, 0.9f, 1e-6f);
+    sums.set_contrast(0.5f);
+    const std::vector<PlaceValue> values = sums.values();
+    EXPECT_NEAR(values[0].ao, is_card ? 0.35f : 0.2f, 1e-6f);
+    EXPECT_NEAR(values[1].ao, is_card ? 0.45f : 0.4f, 1e-6f);
+    EXPECT_NEAR(values[2].ao, is_card ? 0.7f : 0.9f, 1e-6f);
+  }
+}
+
+// One sees nothing, as in a closed room.
+TEST(ValueSums, DarkPlacesOfACardStayDark) {
+  Samples samples;
+  for (int i = 0; i < 8; ++i) {
+    samples.add(0, 0, -1);
+    samples.add(1, 0.5f, -1);
+  }
+  ValueSums sums(one_part(2), BakeSides::front);
+  samples.add_to(sums);
+  sums.choose_sides();
+  sums.set_contrast(0.5f);
+  EXPECT_EQ(sums.values()[0].ao, 0);
+  EXPECT_EQ(sums.values()[1].ao, 0.5f);
+}
+
 TEST(ValueSums, APlaceWithoutSamplesIsUnoccluded) {
   ValueSums sums(one_part(1), BakeSides::max);
   sums.choose_sides();

@@ -301,8 +301,13 @@ MUTATIONS = [
         r"^BakeTarget\."),
     Mutation(
         "errors-of-bakes-by-their-samples-alone", "host/bake/samples/error_check.cpp",
-        "return static_cast<float>((squares + prior) / (told + prior));",
-        "return static_cast<float>((told + prior) / (told + prior));",
+        "fit.ratio = static_cast<float>((squares + prior) / (all.told + prior));",
+        "fit.ratio = static_cast<float>((all.told + prior) / (all.told + prior));",
+        r"^BakeTarget\."),
+    Mutation(
+        "errors-of-bakes-without-lost-contrast", "host/bake/samples/error_check.cpp",
+        "all.squares + c * c * all.own + (1 - 2 * c) * all.cross;",
+        "all.squares + c * c * (all.own - all.cross);",
         r"^BakeTarget\."),
     Mutation(
         "bent-normals-count-by-scale", "host/bake/samples/sample_tracer.cpp",

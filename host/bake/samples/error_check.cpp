@@ -1,24 +1,29 @@
 #include "bake/samples/error_check.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "sampling/random_choice.hpp"
 
 namespace dapple {
 namespace {
 
-/// The most places that are compared, and their share of all: their ratio is known to 0.06, and to
+/// The most places that are compared, and their share of all: their ratio is known to 0.04, and to
 /// 0.2 where there are fewest.
-constexpr std::size_t kMostPlaces = 512, kFewestPlaces = 48, kShare = 16;
+constexpr std::size_t kMostPlaces = 1024, kFewestPlaces = 48, kShare = 16;
 
 /// The assumption that samples are independent counts as much as so many places.
 constexpr double kPlacesOfPrior = 8;
 
-std::vector<std::uint32_t> chosen_places(std::size_t places) {
+std::vector<std::uint32_t> chosen_places(const ValueSums& sums) {
   std::vector<std::uint32_t> chosen;
-  const std::size_t count = std::min(kMostPlaces, places / kShare);
-  for (std::uint32_t i = 0; i < count && count >= kFewestPlaces; ++i)
-    chosen.push_back(static_cast<std::uint32_t>(spread_choice(i, places)));
+  const std::size_t count = std::min(kMostPlaces, sums.size() / kShare);
+  for (std::uint32_t i = 0; chosen.size() < count && count >= kFewestPlaces; ++i) {
+    const auto place = static_cast<std::uint32_t>(spread_choice(i, sums.size()));
+    const std::span<const std::uint32_t> card = sums.card_of(place);
+    chosen.push_back(place);
+    if (!card.empty()) chosen.insert(chosen.end(), card.begin(), card.end());
+  }
   std::sort(chosen.begin(), chosen.end());
   chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
   return chosen;
@@ -26,8 +31,8 @@ std::vector<std::uint32_t> chosen_places(std::size_t places) {
 
 }  // namespace
 
-ErrorCheck::ErrorCheck(const SampledSurface& surface, std::size_t places, BakeSides sides)
-    : places_(chosen_places(places)),
+ErrorCheck::ErrorCheck(const SampledSurface& surface, const ValueSums& sums, BakeSides sides)
+    : places_(chosen_places(sums)),
       second_({std::vector<std::uint32_t>(places_.size() + 1, SmallParts::kLarge), 0}, sides) {
   if (places_.empty()) return;
   for (std::uint32_t i = 0; i < surface.size(); ++i) {
@@ -51,20 +56,55 @@ void ErrorCheck::add(std::vector<SurfaceSample> samples, const TracedSamples& fo
   second_.add(samples, found);
 }
 
-float ErrorCheck::ratio(const ValueSums& sums) const {
-  double told = 0, squares = 0;
-  std::size_t count = 0;
-  for (std::uint32_t i = 0; i < places_.size(); ++i) {
-    const std::uint32_t place = places_[i];
-    if (!sums.is_sampled(place) || !second_.is_sampled(i)) continue;
-    const double difference = double{sums.scalar(place)} - double{sums.scalar(place, second_, i)};
-    squares += 0.5 * difference * difference;
-    told += double{sums.squared_error(place)};
-    ++count;
+// Of one place, or of all places of a card.
+void ErrorCheck::compare(const ValueSums& sums, std::span<const std::uint32_t> places,
+                         Differences& differences) const {
+  std::vector<std::array<double, 2>> values;
+  std::array<double, 2> mean{};
+  for (const std::uint32_t place : places) {
+    const std::uint32_t at = index_of(place);
+    if (!sums.is_sampled(place) || !second_.is_sampled(at)) continue;
+    values.push_back({double{sums.scalar(place)}, double{sums.scalar(place, second_, at)}});
+    for (const std::size_t set : {0, 1}) mean[set] += values.back()[set];
+    differences.told += double{sums.squared_error(place)};
   }
-  if (count < kFewestPlaces / 2 || !(told > 0)) return 1;
-  const double prior = kPlacesOfPrior * told / static_cast<double>(count);
-  return static_cast<float>((squares + prior) / (told + prior));
+  const auto count = static_cast<double>(values.size());
+  differences.places += values.size();
+  if (values.empty()) return;
+  for (double& of_set : mean) of_set /= count;
+  differences.squares += 0.5 * count * (mean[0] - mean[1]) * (mean[0] - mean[1]);
+  if (values.size() < 2) return;
+  differences.of_cards += values.size();
+  for (const std::array<double, 2>& value : values) {
+    const double one = value[0] - mean[0], other = value[1] - mean[1];
+    differences.own += 0.5 * (one * one + other * other);
+    differences.cross += one * other;
+  }
+}
+
+// Of differences d within cards in both sets, c d predicts d' best for c = E[d d'] / E[d^2]. What
+// it is wrong by, beyond the noise of d', is c^2 E[d^2] + (1 - 2 c) E[d d'].
+ErrorFit ErrorCheck::fit(const ValueSums& sums) const {
+  Differences all;
+  for (const std::uint32_t& place : places_) {
+    const std::span<const std::uint32_t> card = sums.card_of(place);
+    if (card.empty())
+      compare(sums, {&place, 1}, all);
+    else if (card.front() == place)
+      compare(sums, card, all);
+  }
+  ErrorFit fit;
+  if (all.places < kFewestPlaces / 2 || !(all.told > 0)) return fit;
+  if (all.of_cards >= kFewestPlaces / 2 && all.own > 0) {
+    const double prior = kPlacesOfPrior * all.own / static_cast<double>(all.of_cards);
+    fit.contrast =
+        static_cast<float>(std::clamp((all.cross + prior) / (all.own + prior), 0.0, 1.0));
+  }
+  const double c = double{fit.contrast};
+  const double squares = all.squares + c * c * all.own + (1 - 2 * c) * all.cross;
+  const double prior = kPlacesOfPrior * all.told / static_cast<double>(all.places);
+  fit.ratio = static_cast<float>((squares + prior) / (all.told + prior));
+  return fit;
 }
 
 }  // namespace dapple

@@ -53,7 +53,7 @@ SampleRounds::SampleRounds(const SampledSurface& surface, std::uint32_t hash,
       ao_(ao),
       lights_(ao ? std::max<std::size_t>(1, tracing.lights) : 1),
       variance_(surface.size(), this->placements()),
-      check_(surface, sums.size(), sides),
+      check_(surface, sums, sides),
       checked_(check_.elements().size()),
       taken_(surface.size()) {}
 
@@ -182,7 +182,9 @@ void SampleRounds::judge() {
   sums_.choose_sides();
   set_variance_factors();
   sums_.set_error_ratio(1);
-  sums_.set_error_ratio(check_.ratio(sums_));
+  const ErrorFit fit = check_.fit(sums_);
+  sums_.set_error_ratio(fit.ratio);
+  sums_.set_contrast(fit.contrast);
 }
 
 // A sample, without the sides that count for no value.

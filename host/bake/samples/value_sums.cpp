@@ -27,6 +27,9 @@ constexpr float kSure = 1.75f;
 /// the squared error of a part's mean is twice what independent corners would have.
 constexpr float kSharedSamples = 2;
 
+/// Places of a card at most.
+constexpr std::size_t kMostOfCard = 8;
+
 /// Places that one thread takes at a time.
 constexpr std::size_t kPlacesAtOnce = 1u << 14;
 
@@ -198,6 +201,32 @@ bool ValueSums::is_dark(std::uint32_t place) const {
   return lights_ == 0 && std::max(sides.front.mean(), sides.back.mean()) <= kDark;
 }
 
+std::span<const std::uint32_t> ValueSums::card_of(std::uint32_t place) const {
+  const std::uint32_t part = parts_.of_place[place];
+  if (part == SmallParts::kLarge) return {};
+  const std::span<const std::uint32_t> places = places_of_part_[part];
+  return places.size() <= kMostOfCard ? places : std::span<const std::uint32_t>{};
+}
+
+// Linear shrinkage: the mean squared error of what is left is the smallest. `value`: returns that
+// of a place by reference.
+template <class Value>
+void ValueSums::move_to_means_of_cards(Value value) const {
+  if (!(contrast_ < 1)) return;
+  for (std::uint32_t i = 0; i < of_place_.size(); ++i) {
+    const std::span<const std::uint32_t> card = card_of(i);
+    if (card.empty() || card.front() != i) continue;
+    const auto is_odd = [this](std::uint32_t place) {
+      return !is_sampled(place) || is_dark(place);
+    };
+    if (std::any_of(card.begin(), card.end(), is_odd)) continue;
+    auto mean = value(i);
+    for (const std::uint32_t place : card.subspan(1)) mean += value(place);
+    mean /= static_cast<float>(card.size());
+    for (const std::uint32_t place : card) value(place) = mean + (value(place) - mean) * contrast_;
+  }
+}
+
 std::vector<PlaceValue> ValueSums::values() const {
   std::vector<PlaceValue> values(of_place_.size());
   for (std::uint32_t i = 0; i < values.size(); ++i) {
@@ -215,6 +244,7 @@ std::vector<PlaceValue> ValueSums::values() const {
     if (sides_ == BakeSides::mean) bent = bent_of_both(place.front.bent, place.back.bent);
     values[i] = {std::clamp(ao, 0.0f, 1.0f), bent.normalized(), true, is_dark(i)};
   }
+  move_to_means_of_cards([&](std::uint32_t place) -> float& { return values[place].ao; });
   return values;
 }
 
@@ -227,6 +257,7 @@ std::vector<V3f> ValueSums::light_values(std::size_t light) const {
     if (share < 1) values[i] += front_light_[at] * ((1 - share) / of_place_[i].front.weight);
     if (share > 0) values[i] += back_light_[at] * (share / of_place_[i].back.weight);
   }
+  move_to_means_of_cards([&](std::uint32_t place) -> V3f& { return values[place]; });
   return values;
 }
 

@@ -48,8 +48,14 @@ class ValueSums {
 
   void set_sampling(const Sampling& sampling) { sampling_ = sampling; }
 
-  /// By what the squared errors that samples tell are to be multiplied: error_check.hpp.
+  /// By what the squared errors that samples tell are to be multiplied, and the part of the
+  /// differences within cards that is not noise, [0,1]: error_check.hpp.
   void set_error_ratio(float ratio) { error_ratio_ = ratio; }
+  void set_contrast(float contrast) { contrast_ = contrast; }
+
+  /// The places of a small part that has few of them, such as the corners of a leaf, in ascending
+  /// order; empty: the place belongs to a larger part.
+  [[nodiscard]] std::span<const std::uint32_t> card_of(std::uint32_t place) const;
 
   /// For each place variance_factor() of its samples; without them, all 1.
   void set_variance_factors(std::vector<float> factors) { factors_ = std::move(factors); }
@@ -100,7 +106,8 @@ class ValueSums {
   /// `target`; 1: enough. Places that may be enclosed need more than others.
   [[nodiscard]] std::vector<float> missing_samples(float target) const;
 
-  /// The values of all places. Places without samples have AO 1: there is nothing to occlude.
+  /// The values of all places; those of a card differ by their contrast. Places without samples
+  /// have AO 1: there is nothing to occlude.
   [[nodiscard]] std::vector<PlaceValue> values() const;
 
   /// The irradiance of a light at all places; 0 at places without samples.
@@ -120,6 +127,8 @@ class ValueSums {
   void add_inside(const SurfaceSample& sample);
   [[nodiscard]] float scale() const { return largest_ > 0 ? largest_ : 1; }
   [[nodiscard]] bool is_dark(std::uint32_t place) const;
+  template <class Value>
+  void move_to_means_of_cards(Value value) const;
   [[nodiscard]] PooledVariance pooled_variance() const;
   /// share_of_back_ of a place, of whose sides `sums` may lack samples.
   [[nodiscard]] float share_of_back(std::uint32_t place, const BothSides& sums) const;
@@ -133,7 +142,7 @@ class ValueSums {
   std::vector<float> factors_;        ///< by place, of the variance of means; empty: 1
   Sampling sampling_;
   PooledVariance variance_;  ///< when sides were chosen
-  float error_ratio_ = 1;
+  float error_ratio_ = 1, contrast_ = 1;
   float largest_ = 0;  ///< the largest TracedSamples::largest
   std::size_t lights_;
   std::vector<V3f> front_light_, back_light_;  ///< weighted sums, the lights of a place together

@@ -89,7 +89,7 @@ void add_ray_options(CLI::App& app, BakeArguments& a) {
   app.add_option("--target-error", a.target_error,
                  "Trace rays until the standard error of each value is at most this. Lights: the "
                  "error of all together, divided by their largest irradiance without occlusion. "
-                 "Default: 0.035, with at most 1024 rays")
+                 "Default: 0.03, with at most 1024 rays")
       ->check(of_values("0..1"));
   app.add_option("--rays", a.rays,
                  "Number of rays per triangle (--at vertices: vertex; --to texture: texel) and "
