@@ -123,7 +123,7 @@ struct RenderOptions {
   bool ao = true;       ///< make the AO pass
   bool light = true;    ///< make the light passes
   bool albedo = true;   ///< make the layer of colours; SceneOptions::colors reads them
-  bool beauty = false;  ///< make layers of what each light adds to RGB
+  bool beauty = false;  ///< make layers of what the sky adds to RGB, and, with `light`, each light
   bool back = false;    ///< make layers of what reaches the other side of surfaces
   /// With `back`: one in so many samples is traced on that side, too, a power of two in [1, 64].
   /// With the default a render takes about 1.1 times as long, and layers of the other side have

@@ -224,6 +224,7 @@ void parse_passes(const std::string& text, RenderOptions& options) {
                       text));
     options.*found->second = true;
   }
+  if (options.beauty) options.light = true;  // RGB has the lights of that pass
   if (options.back && !options.ao && !options.light)
     throw Error(
         ErrorKind::usage,

@@ -70,7 +70,7 @@ void add_layer_options(CLI::App& app, RenderArguments& a) {
   app.add_option(
          "--passes", a.passes,
          "With commas between: ao, light, albedo (colours), beauty (what the sky and each "
-         "light add to RGB), back (AO and light of the side that faces away from the "
+         "light add to RGB; brings light), back (AO and light of the side that faces away from the "
          "camera), motion (pixels until the next frame), visits (nodes and triangles tested)")
       ->capture_default_str();
   app.add_option("--back-every", o.back_every,

@@ -87,11 +87,12 @@ void check_effects(const RenderArguments& a, const RenderOptions& o) {
   };
   need(o.back_every != defaults.back_every, "--back-every", o.back,
        "the pass back: --passes ao,light,albedo,back");
-  need(is_adaptive(o), "--target-rmse and --target-error", o.ao || o.light, "the pass ao or light");
+  need(is_adaptive(o), "--target-rmse and --target-error", o.ao || o.light,
+       "the pass ao, light or beauty");
   need(o.ao_rays != defaults.ao_rays, "--ao-rays", o.ao, "the pass ao");
-  need(o.light_rays != defaults.light_rays, "--light-rays", o.light, "the pass light");
-  need(!a.lights.empty(), "--lights", o.light || o.beauty, "the pass light or beauty");
-  need(!a.dome.empty(), "--dome", o.light || o.beauty, "the pass light or beauty");
+  need(o.light_rays != defaults.light_rays, "--light-rays", o.light, "the pass light or beauty");
+  need(!a.lights.empty(), "--lights", o.light, "the pass light or beauty");
+  need(!a.dome.empty(), "--dome", o.light, "the pass light or beauty");
   need(o.ao_distance > 0, "--ao-distance", o.ao, "the pass ao");
   need(o.roulette != defaults.roulette, "--roulette", o.estimator == Estimator::exact,
        "--estimator exact");
