@@ -193,6 +193,10 @@ void validate(const RenderOptions& options) {
   if (options.aperture) check_range("--aperture", *options.aperture, 0, 1e6);
   if (options.focus_distance)
     check_range("--focus-distance", *options.focus_distance, 1e-6f, kLargestCoordinate);
+  if (options.ground_height) {
+    check_range("--ground-height", *options.ground_height, -kLargestCoordinate, kLargestCoordinate);
+    if (!options.ground) throw Error(ErrorKind::usage, "--ground-height needs --ground");
+  }
   if (options.look) {
     check_point("--look-from", options.look->from);
     check_point("--look-at", options.look->at);

@@ -34,6 +34,7 @@
 #include "scene/check/scene_check.hpp"
 #include "scene/corner_normals.hpp"
 #include "scene/frame_merge.hpp"
+#include "scene/ground.hpp"
 #include "scene/lights/default_lights.hpp"
 
 namespace dapple {
@@ -46,7 +47,7 @@ View prepare_scene(Scene& scene, const RenderOptions& options, std::vector<std::
   for (const auto& [material, value] : options.opacity) override_opacity(scene, material, value);
   View view = choose_view(scene, options, notes);
   check_film_memory(view, options.light ? scene.lights.size() : 0, options);
-  if (options.ground) add_ground(scene);
+  if (options.ground) add_ground(scene, bounds_to_stand_on(scene), options.ground_height);
   if (options.cryptomattes.any() || options.motion) name_objects(scene);
   merge_frame(scene);
   if (options.light && scene.lights.empty()) {

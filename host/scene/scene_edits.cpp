@@ -55,7 +55,13 @@ void use_lights(Scene& scene, const std::vector<Light>& lights) {
 
 void add_ground(Scene& scene) { add_ground(scene, bounds_to_stand_on(scene)); }
 
-void add_ground(Scene& scene, const Box3f& bounds) {
+float ground_height(const Box3f& bounds) {
+  const V3f size = bounds.size();
+  const float drop = 1e-5f * std::max({size.x, size.y, size.z});
+  return bounds.min.y - drop;
+}
+
+void add_ground(Scene& scene, const Box3f& bounds, std::optional<float> height) {
   if (bounds.isEmpty()) {
     throw Error(ErrorKind::input,
                 fmt::format("{}: there is nothing to put a ground under", source_name(scene)));
@@ -64,15 +70,14 @@ void add_ground(Scene& scene, const Box3f& bounds) {
   float width = std::max(size.x, size.z);
   if (width <= 0) width = std::max(size.y, 1.0f);
 
-  // Below a floor of the scene's own, which would be in the same plane.
-  const float drop = 1e-5f * std::max({size.x, size.y, size.z});
   Mesh ground;
   ground.name = "ground";
   append_square(ground, kGroundWidth * width, 0,
                 static_cast<std::uint32_t>(scene.materials.size()));
   Instance instance;
   instance.mesh = static_cast<std::uint32_t>(scene.meshes.size());
-  instance.to_world.setTranslation(V3f(bounds.center().x, bounds.min.y - drop, bounds.center().z));
+  const float y = height.value_or(ground_height(bounds));
+  instance.to_world.setTranslation(V3f(bounds.center().x, y, bounds.center().z));
 
   Material material;
   material.name = "ground";

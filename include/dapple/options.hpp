@@ -155,6 +155,8 @@ struct RenderOptions {
   std::string kernel_dir = {};  ///< read kernels from this folder instead of the built-in ones
   std::string cache = {};       ///< keep built BVHs in this folder and reuse them; empty: don't
   bool ground = false;          ///< put an opaque plane under the scene
+  /// The plane's y with `ground`, metres, [-1e12, 1e12]; none: a little below the lowest point.
+  std::optional<float> ground_height = {};
   std::vector<std::pair<std::string, float>> opacity = {};  ///< material name, opacity in [0,1]
 };
 

@@ -96,6 +96,7 @@ class RenderOptions(TypedDict, total=False):
     packets: Literal["auto", "none", "pixel", "point", "scalar"]
     cache: str
     ground: bool
+    ground_height: float | None
     opacity: Mapping[str, float]
 
 
@@ -141,6 +142,7 @@ _EXPECTED = {
     "ambient": "a number or None",
     "aperture": "a number or None",
     "focus_distance": "a number or None",
+    "ground_height": "a number or None",
 }
 
 
@@ -151,6 +153,7 @@ _NEEDS: dict[str, dict[str, tuple[tuple[str, ...], str]]] = {
         "ao_rays": (("ao",), "ao=True"),
         "ao_distance": (("ao",), "ao=True"),
         "light_rays": (("light",), "light=True"),
+        "ground_height": (("ground",), "ground=True"),
         "max_spp": (("target_rmse", "target_error"), "target_rmse or target_error"),
     },
     "bake": {

@@ -356,7 +356,8 @@ class Scene:
         metres. Layers: ao, light, albedo (True), beauty, back with back_every, deep, visits,
         crypto_object, crypto_material (False). Rays: estimator, footprint (4), roulette, max_bias, report_bias,
         normals, packets, seed; ao_distance (metres), ao_falloff. Scene: opacity={"leaf": 0.85},
-        ground, ambient (radiance of a uniform sky in RGBA, W/(sr m^2); None: chosen); device, cache.
+        ground with ground_height (its y, metres; None: just below the scene), ambient (radiance of a
+        uniform sky in RGBA, W/(sr m^2); None: chosen); device, cache.
 
         >>> picture = dapple.load("scene:demo").render(width=32, height=18, spp=4)
         >>> picture["ao"].shape, picture["Z"].shape

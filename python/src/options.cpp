@@ -93,6 +93,7 @@ void bind_render_options(nb::module_& module) {
       .def_rw("device", &RenderOptions::device)
       .def_rw("cache", &RenderOptions::cache)
       .def_rw("ground", &RenderOptions::ground)
+      .def_rw("ground_height", &RenderOptions::ground_height)
       .def_rw("opacity", &RenderOptions::opacity);
   add_choice(bound, "estimator", &RenderOptions::estimator, kEstimators);
   add_choice(bound, "normals", &RenderOptions::normals, kNormals);

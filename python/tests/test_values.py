@@ -199,6 +199,12 @@ def test_ambient_is_the_sky_of_the_picture(plate: dapple.Scene) -> None:
     assert mean(2) == pytest.approx(2 * mean(1), rel=1e-5)
 
 
+def test_a_ground_is_where_it_is_put(plate: dapple.Scene) -> None:
+    look = ((0, 5, 0.01), (0, 0, 0), (0, 1, 0))
+    picture = plate.render(width=8, height=8, spp=4, look=look, ground=True, ground_height=-7)
+    assert picture["P"][0, 0, 1] == pytest.approx(-7, abs=1e-3)
+
+
 def test_bakes_are_darker_below_an_occluder(plate: dapple.Scene) -> None:
     low = plate_scene(half=0.5, height=0)
     free = low.bake(sides="max", rays=256).meshes[0]["ao"]

@@ -100,7 +100,8 @@ const std::vector<std::string> kPictures = {
     "--normals geometric --cryptomatte object,material --stats-json a.json -q",
     "-o b.exr --exposure auto --background none --png b.png --compression dwaa --multipart "
     "--half all --camera-splitting 2 --ao-rays 3 --light-rays 2 --footprint 2 --max-bias 0.05 "
-    "--report-bias 50% --ambient 0.5 --normals shading --ao-distance 3 --ao-falloff 2 --ground",
+    "--report-bias 50% --ambient 0.5 --normals shading --ao-distance 3 --ao-falloff 2 --ground "
+    "--ground-height=-0.1",
     "-o c.exr --background sky --png c.png --look-from 0,1,6 --look-at 0,0.5,0 --up 0,1,0.1 "
     "--fov 30 --aperture 0.05 --focus-distance 6 --light-radius 0.2 --opacity leaf=0.5 "
     "--estimator exact --roulette 0.5 --packets none --cache trees " +

@@ -12,6 +12,7 @@
 
 #include "dapple/bvh.hpp"
 #include "dapple/error.hpp"
+#include "scene/ground.hpp"
 
 namespace dapple {
 namespace {
@@ -169,6 +170,15 @@ TEST(AddGround, IsOpaqueTwoHundredTimesAsWideAndJustBelowTheLowestPoint) {
   EXPECT_FLOAT_EQ(bounds.center().z, 3.5f);
   EXPECT_EQ(scene.materials.back().name, "ground");
   EXPECT_EQ(scene.materials.back().alpha_mode, AlphaMode::opaque);
+}
+
+TEST(AddGround, IsAtTheHeightThatIsGivenAndAsWideAsEver) {
+  for (const float height : {-7.0f, 0.0f, 4.0f}) {
+    Scene scene = scene_of({triangle_mesh("a", {1, 2, 3}, {3, 5, 3}, {1, 4, 4})}, {placed(0)});
+    add_ground(scene, scene_bounds(scene), height);
+    EXPECT_EQ(scene.instances.back().to_world[3][1], height);
+    EXPECT_FLOAT_EQ(scene_bounds(scene).size().x, 400);
+  }
 }
 
 TEST(AddGround, IsBelowTheLowestVertexOfTiltedInstancesNotBelowTheirBoxes) {

@@ -146,6 +146,9 @@ void add_scene_options(CLI::App& app, RenderArguments& a) {
   add_outside_option(app, a.scene_options.allow_outside);
   add_opacity_option(app, a.opacity);
   app.add_flag("--ground", o.ground, "Put an opaque plane under the scene");
+  app.add_option("--ground-height", o.ground_height,
+                 "Where that plane is: its y, metres; default: just below the scene's lowest point")
+      ->check(of_values("-1e+12..1e+12"));
 }
 
 void add_checkpoint_options(CLI::App& app, RenderArguments& a) {

@@ -36,6 +36,19 @@ std::string camera_options(const Camera& camera) {
                      camera.fov_y * 180 / std::numbers::pi_v<float>);
 }
 
+/// How other frames have the ground that was put under one, or under the first of a sequence.
+std::string ground_note(const Box3f& under, bool is_sequence) {
+  const float height = ground_height(under);
+  return is_sequence ? fmt::format(
+                           "all frames have the same ground; a later sequence has it with "
+                           "--ground --ground-height={}",
+                           height)
+                     : fmt::format(
+                           "the ground lies under what this frame shows; other frames have it with "
+                           "--ground --ground-height={}",
+                           height);
+}
+
 /// Whether everything is scaled to nothing.
 bool is_empty(const Scene& scene) {
   return std::none_of(scene.instances.begin(), scene.instances.end(),
@@ -59,6 +72,7 @@ Shot::Shot(const RenderArguments& a, RenderOptions& options) : arguments_(a), op
   if (a.frames.empty() && a.shutter.empty() && !options.motion) return;
   moving_.emplace(a.scene, scene_options_of(a, options));
   options.ground = false;
+  options.ground_height.reset();
   options.opacity.clear();
 }
 
@@ -73,7 +87,11 @@ Scene Shot::frame(std::optional<double> seconds) {
   Scene scene = moving_ ? moving_->at(seconds) : load_scene(arguments_.scene, scene_options);
   if (lights_) use_lights(scene, *lights_);
   if (dome_) scene.lights.push_back(*dome_);
-  if (!moving_) return scene;
+  if (!moving_) {
+    if (seconds && options_.ground && !options_.ground_height)
+      scene.warnings.push_back(ground_note(bounds_to_stand_on(scene), false));
+    return scene;
+  }
   // Before the ground is added, as in a still: its material is not the scene's.
   for (const auto& [material, value] : options_.opacity) override_opacity(scene, material, value);
   if (!defaults_) defaults_ = choose_defaults(scene, is_empty(scene) ? at_its_end(scene) : scene);
@@ -103,7 +121,10 @@ Shot::Defaults Shot::choose_defaults(const Scene& first, const Scene& shown) con
   if (!options_.look) chosen.camera_name = camera.name;
   chosen.focus_distance = camera.focus_distance;
   if (options_.light && first.lights.empty()) chosen.lights = daylight(camera);
-  if (options_.ground) chosen.ground_under = bounds_to_stand_on(shown);
+  if (!options_.ground) return chosen;
+  chosen.ground_under = bounds_to_stand_on(shown);
+  if (!options_.ground_height)
+    chosen.notes.push_back(ground_note(*chosen.ground_under, !arguments_.frames.empty()));
   return chosen;
 }
 
@@ -130,7 +151,7 @@ void Shot::keep_camera(Scene& scene) const {
 void Shot::add_defaults(Scene& scene) const {
   keep_camera(scene);
   scene.lights.insert(scene.lights.end(), defaults_->lights.begin(), defaults_->lights.end());
-  if (defaults_->ground_under) add_ground(scene, *defaults_->ground_under);
+  if (defaults_->ground_under) add_ground(scene, *defaults_->ground_under, options_.ground_height);
   scene.warnings.insert(scene.warnings.end(), defaults_->notes.begin(), defaults_->notes.end());
   if (!defaults_->lights.empty())
     scene.warnings.push_back(default_light_note(defaults_->ground_under.has_value()));
