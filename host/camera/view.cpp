@@ -195,8 +195,9 @@ void check_camera(const Scene& scene, const Camera& camera) {
 }
 
 /// Applies --aperture and --focus-distance. Without a focus distance the camera focuses on what it
-/// looks at, or on the middle of the scene.
-void set_lens(const Scene& scene, const RenderOptions& options, Camera& camera) {
+/// looks at, or on the middle of the scene, which a note tells: it is another in each frame.
+void set_lens(const Scene& scene, const RenderOptions& options, Camera& camera,
+              std::vector<std::string>& notes) {
   if (options.aperture) camera.lens_radius = *options.aperture;
   if (options.focus_distance) camera.focus_distance = *options.focus_distance;
   if (options.focus_distance && camera.lens_radius == 0)
@@ -204,9 +205,14 @@ void set_lens(const Scene& scene, const RenderOptions& options, Camera& camera) 
   if (camera.lens_radius == 0 || camera.focus_distance > 0) return;
   camera.focus_distance =
       view_depth(camera, options.look ? options.look->at : scene_bounds(scene).center());
-  if (camera.focus_distance > 0) return;
-  throw Error(ErrorKind::usage,
-              "--aperture needs --focus-distance: the middle of the scene is behind the camera");
+  if (!(camera.focus_distance > 0))
+    throw Error(ErrorKind::usage,
+                "--aperture needs --focus-distance: the middle of the scene is behind the camera");
+  if (!options.look)
+    notes.push_back(fmt::format(
+        "the camera focuses on the middle of the scene; other frames are in focus there with "
+        "--focus-distance {}",
+        camera.focus_distance));
 }
 
 }  // namespace
@@ -219,7 +225,7 @@ View choose_view(const Scene& scene, const RenderOptions& options,
     view.camera.fov_y = radians(options.fov_degrees);
   }
   check_camera(scene, view.camera);
-  set_lens(scene, options, view.camera);
+  set_lens(scene, options, view.camera, notes);
   return view;
 }
 

@@ -46,7 +46,7 @@ class FramesCamera : public program_test::ProgramRun {
 std::string camera_options(const std::string& notes) {
   static const std::regex kOptions(
       "note: all frames have the same camera; a later sequence has it with "
-      "(--look-from \\S+ --look-at \\S+ --fov \\S+)\n");
+      "(--look-from \\S+ --look-at \\S+ --fov \\S+( --focus-distance \\S+)?)\n");
   std::smatch found;
   return std::regex_search(notes, found, kOptions) ? found[1].str() : "";
 }
@@ -64,6 +64,23 @@ TEST_F(FramesCamera, TheNotedOptionsShowALaterFrameAsTheSequenceDid) {
     EXPECT_LT(difference("whole.2.exr", "later.2.exr"), 1e-3);
     EXPECT_GT(difference("whole.2.exr", "own.2.exr"), 1e-2) << "its own camera is another";
   }
+}
+
+// The lens is wide: focused elsewhere, other leaves are seen.
+TEST_F(FramesCamera, OfALensHasItsFocusDistanceInTheNotedOptions) {
+  const std::string lens = "--width 16 --height 9 --fps 1 --aperture 0.5 ";
+  const Outcome whole = tree(lens + "--frames 0-2:2 -o whole.#.exr");
+  ASSERT_EQ(whole.code, 0) << whole.err;
+  const std::string options = camera_options(whole.err);
+  const std::size_t focus = options.find(" --focus-distance ");
+  ASSERT_NE(focus, std::string::npos) << whole.err;
+  ASSERT_EQ(tree(lens + "--frames 2-2 -q -o later.#.exr " + options).code, 0);
+  ASSERT_EQ(tree(lens + "--frames 2-2 -q -o look.#.exr " + options.substr(0, focus)).code, 0);
+  EXPECT_LT(difference("whole.2.exr", "later.2.exr"), 1e-3);
+  EXPECT_GT(difference("whole.2.exr", "look.2.exr"), 1e-2) << "it focuses on --look-at";
+  const Outcome given = tree(lens + "--frames 0-0 --focus-distance 3 -o given.#.exr");
+  EXPECT_EQ(given.code, 0) << given.err;
+  EXPECT_FALSE(contains(given.err, "--focus-distance")) << given.err;
 }
 
 /// A wall of 1 m that faces +Z at `at`, and grows from nothing within a second.

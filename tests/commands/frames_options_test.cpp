@@ -108,6 +108,30 @@ TEST_F(FramesOptions, ASequenceKeepsTheFocusOfItsFirstFrame) {
   EXPECT_EQ(focus_distance("a.0.exr"), focus_distance("a.1.exr"));
 }
 
+TEST_F(FramesOptions, AFrameAloneHasTheNotedFocusOfTheSequence) {
+  write_rise();
+  const std::string lens =
+      "render rise.glb --width 8 --height 8 --spp 2 --fps 1 --aperture 0.1 --passes ao ";
+  const Outcome whole = dapple(lens + "--frames 0-1 -o a.#.exr");
+  ASSERT_EQ(whole.code, 0) << whole.err;
+  const std::string begin = "in focus there with ";
+  const std::size_t at = whole.err.find(begin);
+  ASSERT_NE(at, std::string::npos) << whole.err;
+  const std::size_t from = at + begin.size();
+  const std::string option = whole.err.substr(from, whole.err.find('\n', from) - from);
+  EXPECT_TRUE(option.starts_with("--focus-distance ")) << option;
+  for (const std::string frame : {"--frame 1 -o b.exr", "--frame 1 --shutter 0,0.1 -o b.exr"}) {
+    const Outcome own = dapple(lens + frame);
+    ASSERT_EQ(own.code, 0) << own.err;
+    EXPECT_LT(focus_distance("b.exr"), focus_distance("a.1.exr") - 0.5f) << "what it shows rose";
+    EXPECT_TRUE(contains(own.err, begin)) << own.err;
+    const Outcome alike = dapple(lens + frame + " " + option);
+    ASSERT_EQ(alike.code, 0) << alike.err;
+    EXPECT_EQ(focus_distance("b.exr"), focus_distance("a.1.exr"));
+    EXPECT_FALSE(contains(alike.err, begin)) << alike.err;
+  }
+}
+
 TEST_F(FramesOptions, AFirstFrameThatShowsNothingLeavesTheFootprintToTheNext) {
   write_dive();
   const Outcome run = dapple(

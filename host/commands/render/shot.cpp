@@ -24,16 +24,20 @@ Light read_dome(const RenderArguments& a) {
   return dome;
 }
 
-/// The options that choose a camera again that was added to a scene.
-std::string camera_options(const Camera& camera) {
+/// The options that choose a camera again that was added to a scene. `has_focus`: the options have
+/// its focus distance; else the camera would focus on the point that it looks at.
+std::string camera_options(const Camera& camera, bool has_focus) {
   const V3f from = camera.to_world.translation();
   V3f forward;
   camera.to_world.multDirMatrix(V3f(0, 0, -1), forward);
   // As far away as the origin is: coordinates have few digits there.
   const V3f at = from + forward * std::max(1.0f, from.length());
-  return fmt::format("--look-from {:.9g},{:.9g},{:.9g} --look-at {:.9g},{:.9g},{:.9g} --fov {:.9g}",
-                     from.x, from.y, from.z, at.x, at.y, at.z,
-                     camera.fov_y * 180 / std::numbers::pi_v<float>);
+  const std::string focus = camera.lens_radius > 0 && !has_focus
+                                ? fmt::format(" --focus-distance {}", camera.focus_distance)
+                                : "";
+  return fmt::format(
+      "--look-from {:.9g},{:.9g},{:.9g} --look-at {:.9g},{:.9g},{:.9g} --fov {:.9g}{}", from.x,
+      from.y, from.z, at.x, at.y, at.z, camera.fov_y * 180 / std::numbers::pi_v<float>, focus);
 }
 
 /// How other frames have the ground that was put under one, or under the first of a sequence.
@@ -116,7 +120,7 @@ Shot::Defaults Shot::choose_defaults(const Scene& first, const Scene& shown) con
     chosen.camera = camera;
     if (!arguments_.frames.empty())
       chosen.notes.push_back("all frames have the same camera; a later sequence has it with " +
-                             camera_options(camera));
+                             camera_options(camera, options_.focus_distance.has_value()));
   }
   if (!options_.look) chosen.camera_name = camera.name;
   chosen.focus_distance = camera.focus_distance;
