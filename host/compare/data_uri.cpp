@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "files/utf8.hpp"
+
 namespace dapple {
 
 std::string base64(std::string_view bytes) {
@@ -27,7 +29,7 @@ std::string png_data_uri(std::string_view png) { return "data:image/png;base64,"
 
 std::string escape_html(std::string_view text) {
   std::string escaped;
-  for (const char c : text) {
+  for (const char c : utf8_of(std::string(text))) {
     switch (c) {
       case '&':
         escaped += "&amp;";

@@ -13,7 +13,8 @@ std::string base64(std::string_view bytes);
 /// "data:image/png;base64,..." of a PNG file's bytes.
 std::string png_data_uri(std::string_view png);
 
-/// `text` with the characters that have a meaning in HTML, also inside quotes, as entities.
+/// `text` with the characters that have a meaning in HTML, also inside quotes, as entities,
+/// and as UTF-8: names of files may have other bytes.
 std::string escape_html(std::string_view text);
 
 }  // namespace dapple

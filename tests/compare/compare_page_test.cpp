@@ -51,6 +51,7 @@ TEST(DataUri, IsBase64AsInTheRfcsExamples) {
   for (int i = 0; i < 7; ++i) EXPECT_EQ(base64(texts[i]), codes[i]);
   EXPECT_EQ(base64("\xff\xfe\xfd"), "//79");
   EXPECT_EQ(escape_html("<a href=\"b\">&'"), "&lt;a href=&quot;b&quot;&gt;&amp;&#39;");
+  EXPECT_EQ(escape_html("<tr\xe9>"), "&lt;tr\xef\xbf\xbd&gt;") << "U+FFFD for a byte of Latin 1";
 }
 
 std::string decode_base64(const std::string& text) {

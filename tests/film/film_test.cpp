@@ -105,6 +105,17 @@ TEST_F(FilmExr, ReturnsItsMetadata) {
   EXPECT_EQ(back.settings, film.metadata.settings);
 }
 
+TEST_F(FilmExr, MetadataIsUtf8WhateverBytesNamesHave) {
+  Film film = ramp_film(2, 2);
+  film.metadata = some_metadata();
+  film.metadata.scene = "/Bäume/tr\xe9\x65.glb";
+  film.metadata.settings = {{"lamp", "l\xff"}};
+  write_exr(film, path("a.exr"));
+  const FilmMetadata back = read_exr(path("a.exr")).metadata;
+  EXPECT_EQ(back.scene, "/Bäume/tr\xef\xbf\xbd\x65.glb");
+  EXPECT_EQ(back.settings.at(0).second, "l\xef\xbf\xbd");
+}
+
 TEST_F(FilmExr, MetadataIsWhereOtherProgramsLookForIt) {
   Film film = ramp_film(2, 2);
   film.metadata = some_metadata();

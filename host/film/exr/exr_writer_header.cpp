@@ -8,6 +8,8 @@
 #include <array>
 #include <cmath>
 
+#include "files/utf8.hpp"
+
 namespace dapple {
 namespace {
 
@@ -16,8 +18,9 @@ using Imath::V2i;
 
 constexpr std::size_t kMaxAttributeNameLength = 255;
 
+/// Names of files may have other bytes than UTF-8, which viewers and Python refuse.
 void insert_text(Imf::Header& header, const std::string& name, const std::string& value) {
-  header.insert(exr_attribute(name), Imf::StringAttribute(value));
+  header.insert(exr_attribute(name), Imf::StringAttribute(utf8_of(value)));
 }
 
 // Settings of these names are not written: the metadata has the values that were used.
