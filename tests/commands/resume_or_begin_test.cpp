@@ -46,10 +46,12 @@ class ResumeOrBegin : public ProgramRun {
 TEST_F(ResumeOrBegin, GoesOnOrBeginsAnewWithTheSameBits) {
   const Outcome missing = resumed();
   EXPECT_EQ(missing.code, 0);
-  EXPECT_FALSE(contains(missing.err, "begins anew")) << missing.err;
+  EXPECT_TRUE(contains(missing.err, "note: begins anew, since a.ckpt is not there\n"))
+      << missing.err;
   const std::string whole = bytes_of(path("b.exr"));
   const Outcome again = resumed();
   EXPECT_TRUE(contains(again.err, "went on from")) << again.err;
+  EXPECT_FALSE(contains(again.err, "begins anew")) << again.err;
   EXPECT_TRUE(bytes_of(path("b.exr")) == whole);
   std::filesystem::resize_file(path("a.ckpt"), 1000);
   const Outcome damaged = resumed();
@@ -66,6 +68,17 @@ TEST_F(ResumeOrBegin, GoesOnOrBeginsAnewWithTheSameBits) {
   EXPECT_FALSE(bytes_of(path("b.exr")) == whole);
   EXPECT_EQ(bytes_of(path("a.ckpt.unfit")).size(), 1000u) << "the first one is still there";
   EXPECT_TRUE(std::filesystem::exists(path("a.ckpt.unfit_2")));
+}
+
+TEST_F(ResumeOrBegin, ALinkThatLeadsNowhereIsNotThereAndQuietRendersDoNotSaySo) {
+  std::filesystem::create_symlink("nowhere.ckpt", path("link.ckpt"));
+  const std::string render =
+      "render scene:cube?divisions=1 --width 8 --height 8 --spp 1 -o b.exr --resume-or-begin "
+      "link.ckpt ";
+  const Outcome run = dapple(render);
+  EXPECT_EQ(run.code, 0);
+  EXPECT_TRUE(contains(run.err, "note: begins anew, since link.ckpt is not there\n")) << run.err;
+  EXPECT_EQ(dapple(render + "-q").err, "");
 }
 
 TEST_F(ResumeOrBegin, KeepsACheckpointOfAnotherSpelling) {

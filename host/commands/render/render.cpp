@@ -252,6 +252,8 @@ class RenderRun {
     check_files(frames, a_);
     if (!options_.cache.empty()) prepare_bvh_cache(options_.cache);
     catch_interruptions();
+    if (!a_.resume_or_begin.empty() && control_.resume.empty() && !a_.quiet)
+      tell("note: begins anew, since {} is not there\n", a_.resume_or_begin);
     use_exr_threads(static_cast<int>(std::thread::hardware_concurrency()));
 
     Stopwatch total;
