@@ -159,6 +159,26 @@ TEST_F(FramesOptions, AFirstFrameThatShowsNothingLeavesTheExposureToTheNext) {
   expect_frame_1_by_itself("dive.glb --passes ao --max-bias 0 --ambient 50");
 }
 
+TEST_F(FramesOptions, ThePrintedExposureMakesTheSamePreview) {
+  for (const std::string name : {"", ".#"}) {
+    const std::string render =
+        "render 'scene:tree?leaves=500' --width 48 --height 48 --spp 4 --report-bias 0 " +
+        std::string(name.empty() ? "" : "--frames 3-3 ");
+    const auto files = [&](const std::string& file) {
+      return "-o " + file + name + ".exr --png " + file + name + ".png ";
+    };
+    const Outcome chosen = dapple(render + files("a"));
+    ASSERT_EQ(chosen.code, 0) << chosen.err;
+    const std::size_t at = chosen.out.find("--exposure ");
+    ASSERT_NE(at, std::string::npos) << chosen.out;
+    const std::string option = chosen.out.substr(at, chosen.out.find('\n', at) - at);
+    ASSERT_EQ(dapple(render + files("b") + option).code, 0) << option;
+    const std::string number = name.empty() ? "" : ".3";
+    EXPECT_TRUE(bytes_of(path("a" + number + ".png")) == bytes_of(path("b" + number + ".png")))
+        << option;
+  }
+}
+
 TEST_F(FramesOptions, FramesHaveTheSameNoiseUnlessTheSeedIsAnimated) {
   const std::string scene =
       "render 'scene:tree?leaves=200' --width 24 --height 24 --spp 2 --passes ao --report-bias 0 "

@@ -138,12 +138,12 @@ std::string files_text(const Frame& frame, bool interrupted) {
   return files.empty() ? last : fmt::format("{} and {}", fmt::join(files, ", "), last);
 }
 
-/// `exposure`: of the preview, stops.
+/// `exposure`: of the preview, stops. Its digits make the same preview again.
 void print_summary(const RenderStatistics& s, const Frame& frame, std::optional<float> exposure,
                    bool interrupted) {
   const std::string files = files_text(frame, interrupted);
   const bool is_shown = exposure && !frame.png.empty();
-  const std::string stops = is_shown ? fmt::format("; --exposure {:.2f}", *exposure) : "";
+  const std::string stops = is_shown ? fmt::format("; --exposure {}", *exposure) : "";
   if (frame.title.empty()) {
     put("{}wrote {}{}\n", statistics_text(s), files, stops);
     return;
