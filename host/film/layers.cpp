@@ -69,10 +69,13 @@ double root_mean_square(const std::vector<float>& values) {
   return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
+/// Rays of AO and lights are those of both sides, as their visits are.
 void count_visits(const Sums& sums, const TracedPicture& picture, const FilmLayout& layout,
                   const RenderOptions& options, const std::vector<Light>& lights,
                   RenderStatistics& s) {
-  const double hits = sums.total(DAPPLE_PLANE_HITS);
+  const double of_backs =
+      options.back ? sums.total(layout.back_samples + DAPPLE_PLANE_BACK_HITS) : 0.0;
+  const double hits = sums.total(DAPPLE_PLANE_HITS) + of_backs;
   s.rays.camera =
       std::accumulate(picture.samples.begin(), picture.samples.end(), std::uint64_t{0}) /
       splitting_factor(options);
@@ -96,7 +99,7 @@ void count_visits(const Sums& sums, const TracedPicture& picture, const FilmLayo
 }
 
 /// Adds the layers of node visits and triangle tests: those of a camera ray and of the AO and light
-/// rays of its samples, as a mean of each pixel.
+/// rays of its samples, on both sides, as a mean of each pixel.
 void add_visits(Planes& planes, const Sums& sums, const TracedPicture& picture,
                 const FilmLayout& layout, const RenderOptions& options) {
   const auto total = [&](std::uint32_t p, std::uint32_t which) {

@@ -206,8 +206,7 @@ class PictureTracer {
   bool trace_round(const SamplePlan& plan, const TraceControl& control) {
     Round& round = state_.round;
     // With a target the rounds so far are only a part of the work.
-    const double given = sum_of(plan.samples());
-    const double total = plan.is_adaptive() ? given / plan.fraction_done()
+    const double total = plan.is_adaptive() ? sum_of(plan.samples()) / plan.fraction_done()
                                             : static_cast<double>(layout_.pixels) * plan.minimum();
     for (bool new_group = true; !round.is_done(); new_group = round.entry + round.sample == 0) {
       if (!save_if_due(plan, control)) return false;
@@ -259,11 +258,10 @@ class PictureTracer {
       const HostView sums = context_.view(film_.sums), squares = context_.view(film_.squares);
       errors = FilmMoments(sums, squares, layout_, options_, samples, width_).variances();
     }
-    for (std::vector<float>& pass : errors) {
+    for (std::vector<float>& pass : errors)
       tbb::parallel_for(std::size_t{0}, pass.size(), [&](std::size_t p) {
         pass[p] = std::sqrt(pass[p] * DAPPLE_SAMPLE_BATCH / static_cast<float>(samples[p]));
       });
-    }
     return errors;
   }
 
@@ -335,6 +333,7 @@ class PictureTracer {
                    RayOrder::by_pixel);
     if (bias_) bias_->collect(first_layer(side), side.queues, params);
     resolve_.plane = side.is_back ? layout_.back_ao : layout_.ao;
+    resolve_.visits = layout_.ao_visits();
     resolve_.squares = 0;
     resolve_.rays = params.rays_per_point;
     resolve_.scale = layout_.unit_scale;
@@ -348,6 +347,7 @@ class PictureTracer {
     if (bias_)
       bias_->collect(first_layer(side) + (options_.ao ? 1 : 0) + light, side.queues, params);
     resolve_.plane = side.is_back ? layout_.back_lights[light] : layout_.lights[light].first;
+    resolve_.visits = layout_.lights[light].visits();
     resolve_.squares = layout_.light_squares(light);
     resolve_.rays = params.rays_per_point;
     resolve_.scale = layout_.lights[light].scale;

@@ -85,6 +85,7 @@ __kernel void resolve_ao(__global const PixelWork* work, __global const SampleHi
   add_squares(squares, params, pixel, &batches);
   add_to_planes(film, params, params.backs ? 1u : DAPPLE_AO_PLANES, pixel,
                 (long8)(sums.s0123, visits, tests, 0, 0));
+  add_costs_of_backs(film, params, pixel, visits, tests);
   if (params.albedo) add_color(film, params, DAPPLE_AO_PLANES, pixel, sums.s45674567);
 }
 
@@ -123,4 +124,5 @@ __kernel void resolve_light(__global const PixelWork* work, __global const Sampl
   add_squares(squares, params, pixel, &batches);
   const uint planes = DAPPLE_LIGHT_PLANES + (params.albedo ? DAPPLE_REFLECTED_PLANES : 0u);
   add_to_planes(film, params, params.backs ? 1u : planes, pixel, sums);
+  add_costs_of_backs(film, params, pixel, sums.s2, sums.s3);
 }

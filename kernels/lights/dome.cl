@@ -73,5 +73,6 @@ __kernel void resolve_dome(__global const PixelWork* work, __global const Sample
   const FilmPixel pixel = film_pixel(work, params, local_pixel);
   add_squares(squares, params, pixel, &batches);
   add_to_planes(film, params, params.backs ? DAPPLE_DOME_CHANNELS : DAPPLE_DOME_PLANES, pixel, sums);
+  add_costs_of_backs(film, params, pixel, sums.s6, sums.s7);
   if (params.albedo) add_color(film, params, DAPPLE_DOME_PLANES, pixel, reflected);
 }

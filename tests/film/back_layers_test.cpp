@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "dapple/render.hpp"
 #include "dapple/scene.hpp"
@@ -206,6 +207,62 @@ TEST(Back, WithATargetSkyHasNoBacksOfLeavesBesideIt) {
     }
     EXPECT_GT(sky, 10u);
   }
+}
+
+/// What all rays of a picture cost: node visits and triangle tests.
+std::pair<double, double> costs(const RenderStatistics& s) {
+  const auto camera = static_cast<double>(s.rays.camera), ao = static_cast<double>(s.rays.ao),
+             light = static_cast<double>(s.rays.light);
+  return {camera * s.camera.visits + ao * s.ao.visits + light * s.light.visits,
+          camera * s.camera.tests + ao * s.ao.tests + light * s.light.tests};
+}
+
+Light dome() {
+  Light sky;
+  sky.name = "sky";
+  sky.kind = LightKind::dome;
+  return sky;
+}
+
+// A ball of leaves costs as much from behind as from before.
+TEST(Back, RaysOfBacksCountInTheStatisticsAndInTheLayersOfVisits) {
+  Scene scene = thin_leaves();
+  scene.lights.push_back(dome());
+  RenderOptions options = leaf_picture(1, 1);
+  options.width = options.height = 32;
+  options.spp = 8;
+  options.visits = true;
+  for (const Packets packets : {Packets::automatic, Packets::scalar}) {
+    options.packets = packets;
+    options.back = true;
+    const RenderResult with = render(scene, options);
+    options.back = false;
+    const RenderResult without = render(scene, options);
+    const RenderStatistics &both = with.statistics, &front = without.statistics;
+    EXPECT_EQ(both.rays.camera, front.rays.camera);
+    EXPECT_EQ(both.rays.ao, 2 * front.rays.ao);
+    EXPECT_EQ(both.rays.light, 2 * front.rays.light);
+    EXPECT_NEAR(both.ao.visits / front.ao.visits, 1, 0.5);
+    EXPECT_NEAR(both.light.visits / front.light.visits, 1, 0.5);
+    const auto pixels_rays = static_cast<double>(both.rays.camera);  // as many for each pixel
+    for (const RenderResult* result : {&with, &without}) {
+      const auto [visits, tests] = costs(result->statistics);
+      EXPECT_NEAR(mean(result->film, "visits.nodes") * pixels_rays / visits, 1, 1e-4);
+      EXPECT_NEAR(mean(result->film, "visits.triangles") * pixels_rays / tests, 1, 1e-4);
+    }
+    EXPECT_GT(mean(with.film, "visits.nodes"), 1.1 * mean(without.film, "visits.nodes"));
+  }
+}
+
+TEST(Back, OneSampleInSixteenHasASixteenthOfTheRays) {
+  const Scene scene = card(0);
+  RenderOptions options = picture();
+  options.light = false;
+  options.back = false;
+  const std::uint64_t front = render(scene, options).statistics.rays.ao;
+  options.back = true;
+  options.back_every = 16;
+  EXPECT_EQ(render(scene, options).statistics.rays.ao, front + front / 16);
 }
 
 }  // namespace

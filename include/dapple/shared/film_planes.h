@@ -14,7 +14,8 @@
 #define DAPPLE_PLANE_CAMERA_TESTS 9u  /* of triangles and segments */
 #define DAPPLE_SURFACE_PLANES 10u
 
-/* Of AO: transmittance, unoccluded directions (3), visits, tests. Backs have the first one alone. */
+/* Of AO: transmittance, unoccluded directions (3), visits, tests. Backs have the first one alone; their visits
+   and tests count among those of the front, here and of lights. */
 #define DAPPLE_PLANE_AO_BENT 1u
 #define DAPPLE_PLANE_AO_VISITS 4u /* and tests */
 #define DAPPLE_AO_PLANES 6u

@@ -136,7 +136,8 @@ typedef struct ResolveParams {
   uint plane;          /* first plane to add to */
   uint rays;           /* rays a sample */
   uint squares;        /* first of two planes of squares to add to */
-  uint backs;          /* 1: of AO and lights only what arrives is added, and no squares */
+  uint backs;          /* 1: of AO and lights only what arrives is added, and no squares; visits to `visits` */
+  uint visits;         /* plane of the front's visits, before that of its tests */
   uint albedo;         /* 1: DAPPLE_REFLECTED_PLANES follow */
   uint splitting_bits; /* as in CameraParams */
   float scale;         /* of values in [0,1] */
