@@ -101,7 +101,7 @@
   MEMBER(ResolveParams, slice) MEMBER(ResolveParams, film_pixels)                            \
   MEMBER(ResolveParams, first_sample)                                                        \
   MEMBER(ResolveParams, plane) MEMBER(ResolveParams, rays) MEMBER(ResolveParams, squares)    \
-  MEMBER(ResolveParams, backs) MEMBER(ResolveParams, albedo)                                 \
+  MEMBER(ResolveParams, backs) MEMBER(ResolveParams, visits) MEMBER(ResolveParams, albedo)   \
   MEMBER(ResolveParams, splitting_bits)                                                      \
   MEMBER(ResolveParams, scale)                                                               \
   MEMBER(ResolveParams, position_scale) MEMBER(ResolveParams, depth_scale)                   \
