@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "dapple/error.hpp"
 #include "passes/ray_packets.hpp"
 
 namespace dapple {
@@ -41,6 +42,8 @@ KernelName shading_kernel(const DeviceContext& context) {
 void shading_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
                   const FilmBuffers& film, const ResolveParams& params, const Viewpoint& from,
                   int spp) {
+  if (queues.albedo.bytes() > 0 && !scene.uploaded.colors)
+    throw Error(ErrorKind::usage, "albedo needs a scene that is uploaded with colors");
   shade(context, scene, queues, film, true, params, from, spp);
 }
 

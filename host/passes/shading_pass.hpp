@@ -12,6 +12,7 @@ KernelName shading_kernel(const DeviceContext& context);
 
 /// Comes after resolve_surface_pass(), because it moves points to where their rays start. `spp`:
 /// samples a pixel that footprints are computed for. `from`: where the points were seen from.
+/// Throws Error usage for a queue of albedos and a scene without colours: nothing would fill it.
 void shading_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
                   const FilmBuffers& film, const ResolveParams& params, const Viewpoint& from,
                   int spp);

@@ -19,10 +19,7 @@ using namespace program_test;
 
 class DeformationCommand : public ProgramRun {
  protected:
-  void write_glb(const char* name, const test::GltfBuilder& file) const {
-    const test::Bytes bytes = file.glb();
-    write_bytes(path(name), {bytes.begin(), bytes.end()});
-  }
+  void write_glb(const char* name, const test::GltfBuilder& file) const { write(name, file.glb()); }
   void render_to(const std::string& output, const std::string& options) const {
     const Outcome run =
         dapple("render " + options + " --width 48 --height 48 --spp 4 -q -o " + output);

@@ -20,13 +20,8 @@ class FramesAlone : public program_test::ProgramRun {
   /// Writes climb.glb: a triangle that moves up at 1 m/s from 0 s to 1 s.
   void SetUp() override {
     test::GltfBuilder b = test::one_triangle();
-    const int times = b.add_accessor(std::vector<float>{0, 1}, test::kFloat, "SCALAR");
-    const int values = b.add_positions({0, 0, 0, 0, 1, 0});
-    b.add("animations",
-          {{"samplers", {{{"input", times}, {"output", values}}}},
-           {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}}});
-    const test::Bytes glb = b.glb();
-    write_bytes(path("climb.glb"), {glb.begin(), glb.end()});
+    b.add_movement(0, {0, 1}, {0, 0, 0, 0, 1, 0});
+    write("climb.glb", b.glb());
   }
   [[nodiscard]] Outcome climb(const std::string& options) const {
     return dapple("render climb.glb --width 16 --height 16 --spp 4 --fps 1 --passes ao " + options);

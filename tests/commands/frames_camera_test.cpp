@@ -104,8 +104,7 @@ test::GltfBuilder growing_wall(const std::vector<float>& at) {
 TEST_F(FramesCamera, OfWhatGrowsFromNothingIsThatOfItsEnd) {
   for (const float far : {0.0f, 30000.0f}) {
     SCOPED_TRACE(far);
-    const test::Bytes glb = growing_wall({far, 0, far}).glb();
-    write_bytes(path("wall.glb"), std::string(glb.begin(), glb.end()));
+    write("wall.glb", growing_wall({far, 0, far}).glb());
     const std::string wall = "render wall.glb --spp 4 --passes ao --width 16 --height 9 --fps 1 ";
     const Outcome whole = dapple(wall + "--frames 0-1 -o whole.#.exr");
     ASSERT_EQ(whole.code, 0) << whole.err;

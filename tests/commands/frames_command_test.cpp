@@ -24,16 +24,8 @@ class FramesCommand : public ProgramRun {
   /// Writes climb.glb, a triangle that moves up at 1 m/s from 0 s to 1 s.
   void write_climb() const {
     test::GltfBuilder b = test::one_triangle();
-    const int times = b.add_accessor(std::vector<float>{0, 1}, test::kFloat, "SCALAR");
-    const int values = b.add_positions({0, 0, 0, 0, 1, 0});
-    b.add("animations",
-          {{"name", "climb"},
-           {"samplers", {{{"input", times}, {"output", values}}}},
-           {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}}});
-    const auto bytes = b.glb();
-    std::ofstream(path("climb.glb"), std::ios::binary)
-        .write(reinterpret_cast<const char*>(bytes.data()),
-               static_cast<std::streamsize>(bytes.size()));
+    b.add_movement(0, {0, 1}, {0, 0, 0, 0, 1, 0})["name"] = "climb";
+    write("climb.glb", b.glb());
   }
   /// Writes blink.glb, a triangle with a lamp and a camera that are scaled to nothing at 0 s and at
   /// 2 s. `steady`: another camera is not.
@@ -55,12 +47,8 @@ class FramesCommand : public ProgramRun {
       channels.push_back({{"sampler", 0}, {"target", {{"node", node}, {"path", "scale"}}}});
     b.add("animations",
           {{"samplers", {{{"input", times}, {"output", values}}}}, {"channels", channels}});
-    const auto bytes = b.glb();
-    std::ofstream(path("blink.glb"), std::ios::binary)
-        .write(reinterpret_cast<const char*>(bytes.data()),
-               static_cast<std::streamsize>(bytes.size()));
+    write("blink.glb", b.glb());
   }
-  static std::string text_of(const test::Bytes& bytes) { return {bytes.begin(), bytes.end()}; }
   static int count(const std::string& text, const std::string& part) {
     int found = 0;
     for (std::size_t at = 0; (at = text.find(part, at)) != std::string::npos; ++at) ++found;
@@ -277,8 +265,8 @@ TEST_F(FramesCommand, InvalidArgumentsAreRefusedBeforeAnythingIsRendered) {
 }
 
 TEST_F(FramesCommand, OfWhatDoesNotMoveStayAtRestAndSaySoOnce) {
-  write_bytes(path("still.glb"), text_of(test::one_triangle().glb()));
-  write_bytes(path("a.hair"), text_of(test::two_strands().bytes()));
+  write("still.glb", test::one_triangle().glb());
+  write("a.hair", test::two_strands().bytes());
   const std::string rest = ": has no animations, and stays in its rest pose";
   const std::pair<const char*, std::string> cases[] = {
       {"still.glb", "still.glb" + rest},
@@ -300,8 +288,8 @@ TEST_F(FramesCommand, OfWhatDoesNotMoveStayAtRestAndSaySoOnce) {
 }
 
 TEST_F(FramesCommand, AnAnimationThatASceneOfAnyKindDoesNotHaveIsRefused) {
-  write_bytes(path("still.glb"), text_of(test::one_triangle().glb()));
-  write_bytes(path("a.hair"), text_of(test::two_strands().bytes()));
+  write("still.glb", test::one_triangle().glb());
+  write("a.hair", test::two_strands().bytes());
   for (const char* scene : {"still.glb", "a.hair", "scene:tree?wind=1", "scene:cube"}) {
     SCOPED_TRACE(scene);
     const std::string what = "--animation walk: " + std::string(scene) + " has no animations";
@@ -314,8 +302,8 @@ TEST_F(FramesCommand, AnAnimationThatASceneOfAnyKindDoesNotHaveIsRefused) {
 }
 
 TEST_F(FramesCommand, ALineRadiusWithoutLinesIsNoted) {
-  write_bytes(path("still.glb"), text_of(test::one_triangle().glb()));
-  write_bytes(path("a.hair"), text_of(test::two_strands().bytes()));
+  write("still.glb", test::one_triangle().glb());
+  write("a.hair", test::two_strands().bytes());
   for (const std::string scene : {"still.glb", "a.hair", "scene:cube"}) {
     const std::string note =
         "note: " + scene + ": has no glTF lines, and --line-radius changes nothing\n";

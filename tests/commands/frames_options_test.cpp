@@ -23,19 +23,12 @@ class FramesOptions : public ProgramRun {
   /// Writes rise.glb: the triangle rises towards a camera that looks down on it.
   void write_rise() const {
     test::GltfBuilder b = test::one_triangle();
-    const int times = b.add_accessor(std::vector<float>{0, 1}, test::kFloat, "SCALAR");
-    const int values = b.add_positions({0, 0, 0, 0, 1, 0});
-    b.add("animations",
-          {{"samplers", {{{"input", times}, {"output", values}}}},
-           {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}}});
+    b.add_movement(0, {0, 1}, {0, 0, 0, 0, 1, 0});
     b.add("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}});
     b.add("nodes", {{"translation", {0.3, 4, 0}},
                     {"rotation", {-0.70710678, 0, 0, 0.70710678}},
                     {"camera", 0}});
-    const auto bytes = b.glb();
-    std::ofstream(path("rise.glb"), std::ios::binary)
-        .write(reinterpret_cast<const char*>(bytes.data()),
-               static_cast<std::streamsize>(bytes.size()));
+    write("rise.glb", b.glb());
   }
   /// Writes dive.glb: grass whose camera is high above it until 1 s, and then on the ground.
   void write_dive() const {
@@ -46,19 +39,12 @@ class FramesOptions : public ProgramRun {
     const std::size_t size = b.doc["buffers"][0]["byteLength"];
     b.bin.assign(bytes.end() - static_cast<std::ptrdiff_t>(size), bytes.end());
     b.doc.erase("buffers");
-    const int times = b.add_accessor(std::vector<float>{0, 1}, test::kFloat, "SCALAR");
-    const int values = b.add_positions({0, 1000, 0, 0, 0, 0});
     const std::size_t camera = 2;  // the last node
     ASSERT_TRUE(b.doc["nodes"][camera].contains("camera"));
     const int above = b.add("nodes", {{"children", {camera}}});
     b.doc["scenes"][0]["nodes"] = {0, 1, above};
-    b.add(
-        "animations",
-        {{"samplers", {{{"input", times}, {"output", values}, {"interpolation", "STEP"}}}},
-         {"channels", {{{"sampler", 0}, {"target", {{"node", above}, {"path", "translation"}}}}}}});
-    const auto glb = b.glb();
-    std::ofstream(path("dive.glb"), std::ios::binary)
-        .write(reinterpret_cast<const char*>(glb.data()), static_cast<std::streamsize>(glb.size()));
+    b.add_movement(above, {0, 1}, {0, 1000, 0, 0, 0, 0})["samplers"][0]["interpolation"] = "STEP";
+    write("dive.glb", b.glb());
   }
   /// Writes turn.glb: a sun shines on the back of a triangle until 1 s, and then on its front.
   void write_turn(const char* light = "sun") const {
@@ -75,9 +61,7 @@ class FramesOptions : public ProgramRun {
     b.add("animations",
           {{"samplers", {{{"input", times}, {"output", values}, {"interpolation", "STEP"}}}},
            {"channels", {{{"sampler", 0}, {"target", {{"node", sun}, {"path", "rotation"}}}}}}});
-    const auto glb = b.glb();
-    std::ofstream(path("turn.glb"), std::ios::binary)
-        .write(reinterpret_cast<const char*>(glb.data()), static_cast<std::streamsize>(glb.size()));
+    write("turn.glb", b.glb());
   }
   /// Expects that frame 1 is the same in a sequence from frame 0 as by itself.
   void expect_frame_1_by_itself(const std::string& options) const {

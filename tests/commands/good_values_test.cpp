@@ -28,12 +28,7 @@ test::GltfBuilder stage() {
   b.add_mesh({{"mode", 1}, {"attributes", {{"POSITION", b.add_positions({0, 0, 0, 0, 1, 1})}}}});
   b.add("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}});
   b.add("nodes", {{"translation", {0.3, 0.5, 4}}, {"camera", 0}, {"name", "side"}});
-  const int times = b.add_accessor(std::vector<float>{0, 1}, test::kFloat, "SCALAR");
-  const int values = b.add_positions({0, 0, 0, 0, 1, 0});
-  b.add("animations",
-        {{"name", "climb"},
-         {"samplers", {{{"input", times}, {"output", values}}}},
-         {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}}});
+  b.add_movement(0, {0, 1}, {0, 0, 0, 0, 1, 0})["name"] = "climb";
   return b;
 }
 
@@ -48,8 +43,7 @@ class GoodValues : public ProgramRun {
         R"({"lights": [{"type": "dome", "name": "clouds", "image": "sky.hdr", "exposure": -1},
                        {"type": "disk", "name": "lamp", "position": [0, 3, 0], "target": [0, 0, 0],
                         "radius": 0.5, "radiance": [9, 9, 9]}]})");
-    const test::Bytes glb = stage().glb();
-    write_bytes(path("stage.glb"), {glb.begin(), glb.end()});
+    write("stage.glb", stage().glb());
   }
 
   /// Runs the program, which must end well and not call an option useless.

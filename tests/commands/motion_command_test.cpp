@@ -83,14 +83,8 @@ class MotionCommand : public ProgramRun {
                         {"znear", 0.1},
                         {"zfar", 10}}}});
     b.add("nodes", {{"translation", {0, 0, 3}}, {"camera", 0}});
-    const int times = b.add_accessor(std::vector<float>{0, 1, 2}, test::kFloat, "SCALAR");
-    const int places = b.add_positions({-0.8f, 0.6f, 0, 0, 0, 0, -0.6f, -0.8f, 0});
-    b.add("animations",
-          {{"samplers", {{{"input", times}, {"output", places}}}},
-           {"channels",
-            {{{"sampler", 0}, {"target", {{"node", square}, {"path", "translation"}}}}}}});
-    const test::Bytes bytes = b.glb();
-    write_bytes(path("square.glb"), {bytes.begin(), bytes.end()});
+    b.add_movement(square, {0, 1, 2}, {-0.8f, 0.6f, 0, 0, 0, 0, -0.6f, -0.8f, 0});
+    write("square.glb", b.glb());
   }
 
   void render_to(const std::string& output, const std::string& options) const {

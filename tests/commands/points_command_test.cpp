@@ -210,8 +210,7 @@ TEST_F(PointsCommand, WritesBentNormalsAndEachSunInColumnsOfTheirOwn) {
   wall.add_mesh(
       {{"attributes",
         {{"POSITION", wall.add_positions({0.1f, -1, -300, 0.1f, -1, 300, 0.1f, 300, 0})}}}});
-  const test::Bytes bytes = wall.glb();
-  film_test::write_bytes(path("wall.glb"), {bytes.begin(), bytes.end()});
+  write("wall.glb", wall.glb());
   std::ofstream(path("at.csv")) << "x,y,z,nx,ny,nz\n0,0,0,0,1,0\n";
   std::ofstream(path("suns.csv")) << "azimuth,elevation,irradiance\n270,30,800\n90,30,700\n";
   const program_test::Outcome run = dapple(

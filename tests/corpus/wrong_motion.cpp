@@ -14,11 +14,7 @@ void add(MalformedCases& cases, const std::string& name, const GltfBuilder& buil
 /// translations.
 GltfBuilder moved() {
   GltfBuilder b = one_triangle();
-  const int times = b.add_accessor(std::vector<float>{0, 1}, kFloat, "SCALAR");
-  const int places = b.add_positions({0, 0, 0, 1, 1, 1});
-  b.add("animations",
-        {{"samplers", {{{"input", times}, {"output", places}}}},
-         {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}}});
+  b.add_movement(0, {0, 1}, {0, 0, 0, 1, 1, 1});
   return b;
 }
 

@@ -23,7 +23,7 @@ class Pictures {
  public:
   explicit Pictures(const SceneOnDevice& scene) : scene_(scene) {
     options_.width = options_.height = 48;
-    options_.light = false;
+    options_.light = options_.albedo = false;
     std::vector<std::string> notes;
     view_ = choose_view(scene.scene, options_, notes);
   }

@@ -34,6 +34,7 @@ WallSums trace_wall(std::uint32_t slice, std::uint32_t first) {
   options.width = options.height = 4;
   options.spp = static_cast<int>(first) + kSamples;
   options.back = true;
+  options.albedo = false;
   options.back_every = 16;
   options.report_bias = 0;
   options.camera_splitting = options.ao_rays = 1;

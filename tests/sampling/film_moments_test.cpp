@@ -110,7 +110,7 @@ TEST(FilmMoments, PilotPixelsStandForOthers) {
 TEST(FilmMoments, KernelsSquareTheMeansOfBatchesAndOfPairs) {
   const scene_test::SceneOnDevice cloud(make_procedural("scene:cloud?leaves=300"));
   RenderOptions options;
-  options.light = false;
+  options.light = options.albedo = false;
   options.width = options.height = 16;
   options.spp = options.max_spp = 28;  // seven batches: three pairs and a single batch
   options.target_error = 1e-6f;        // without a target, states have no squares

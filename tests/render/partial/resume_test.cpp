@@ -107,7 +107,7 @@ Checkpoint of_some_picture() {
 }
 
 TEST_F(Resume, ARenderLeftAfterAnySliceGoesOnToTheSameBits) {
-  const SceneOnDevice tree(lit_tree());
+  const SceneOnDevice tree(lit_tree(), {.colors = true});
   RenderOptions split = with(&RenderOptions::target_error, 0.04f);
   split.camera_splitting = 4;
   RenderOptions piloted = with(&RenderOptions::target_rmse, 0.03f);
@@ -144,7 +144,7 @@ Scene seen_from_afar(Scene scene) {
 }
 
 void expect_passes_to_add_up(const Scene& scene) {
-  const SceneOnDevice tree(scene);
+  const SceneOnDevice tree(scene, {.colors = true});
   RenderOptions options = small_picture();
   options.spp = 100;
   const Tracing tracing(tree, options);

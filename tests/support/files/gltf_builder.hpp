@@ -115,6 +115,16 @@ class GltfBuilder {
     return add_mesh({{"attributes", {{"POSITION", add_positions({0, 0, 0, 1, 0, 0, 0, 1, 0})}}}});
   }
 
+  /// Adds an animation that moves `node` to `places` (x, y, z of each) at `times`, seconds.
+  /// Returns the animation.
+  json& add_movement(int node, const std::vector<float>& times, const std::vector<float>& places) {
+    const int input = add_accessor(times, kFloat, "SCALAR"), output = add_positions(places);
+    add("animations",
+        {{"samplers", {{{"input", input}, {"output", output}}}},
+         {"channels", {{{"sampler", 0}, {"target", {{"node", node}, {"path", "translation"}}}}}}});
+    return doc["animations"].back();
+  }
+
   [[nodiscard]] Bytes glb() const {
     json copy = doc;
     if (!bin.empty() && !copy.contains("buffers")) {

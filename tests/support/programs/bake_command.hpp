@@ -27,11 +27,6 @@ class BakeCommand : public ProgramRun {
     }
   }
 
-  void write(const std::string& name, const test::Bytes& bytes) const {
-    std::ofstream(path(name), std::ios::binary)
-        .write(reinterpret_cast<const char*>(bytes.data()),
-               static_cast<std::streamsize>(bytes.size()));
-  }
   [[nodiscard]] json document(const std::string& name) const {
     return test::GltfData(path(name)).doc;
   }

@@ -73,7 +73,7 @@ class FrameTracer {
               const RenderOptions& options, int size, int seeds)
       : device_(device), scene_(scene), bounds_(bounds), options_(options), seeds_(seeds) {
     options_.width = options_.height = size;
-    options_.light = false;
+    options_.light = options_.albedo = false;
   }
 
   [[nodiscard]] std::vector<Frame> frames(const RecedingCamera& path, Estimator estimator,

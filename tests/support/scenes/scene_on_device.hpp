@@ -25,10 +25,10 @@ inline const Device& device() {
 /// A scene with its BVH, uploaded to the device. Its instances are not merged.
 class SceneOnDevice {
  public:
-  explicit SceneOnDevice(Scene scene_to_build)
+  explicit SceneOnDevice(Scene scene_to_build, const UploadOptions& options = {})
       : scene(std::move(scene_to_build)),
         bvh(build_bvh(scene)),
-        uploaded(upload(device(), scene, bvh)) {}
+        uploaded(upload(device(), scene, bvh, options)) {}
   SceneOnDevice(const SceneOnDevice&) = delete;
   SceneOnDevice& operator=(const SceneOnDevice&) = delete;
 
