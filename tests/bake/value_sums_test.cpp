@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <tuple>
 #include <vector>
 
 namespace dapple {
@@ -69,6 +70,37 @@ TEST(ValueSums, PlacesOfACardDifferByTheirContrast) {
   }
 }
 
+TEST(ValueSums, ErrorsOfACardDifferByTheSquareOfItsContrast) {
+  Samples samples;
+  for (const auto& [place, count] : {std::pair{0u, 2}, {1u, 8}, {2u, 32}})
+    for (int i = 0; i < count; ++i) samples.add(place, i % 2 ? 0.4f : 0.6f, -1);
+  ValueSums sums(one_part(3), BakeSides::front);
+  samples.add_to(sums);
+  sums.choose_sides();
+  const std::vector<float> own = sums.squared_errors();
+  sums.set_contrast(0.5f);
+  const std::vector<float> moved = sums.squared_errors();
+  const float mean = (own[0] + own[1] + own[2]) / 3;
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    EXPECT_FLOAT_EQ(own[i], sums.squared_noise(i));
+    EXPECT_NEAR(moved[i], mean + 0.25f * (own[i] - mean), 1e-8f);
+  }
+  EXPECT_GT(own[0], 3 * own[1]);
+}
+
+TEST(ValueSums, PlacesThatSeeNothingGetEightSamples) {
+  Samples samples;
+  for (const auto& [place, ao, count] :
+       {std::tuple{0u, 0.0f, 2}, {1u, 0.0f, 8}, {2u, 0.3f, 2}, {3u, 0.0f, 16}})
+    for (int i = 0; i < count; ++i) samples.add(place, ao, -1);
+  for (int i = 0; i < 4; ++i) samples.add(4, 0, -1, true);
+  ValueSums sums({std::vector<std::uint32_t>(6, SmallParts::kLarge), 0}, BakeSides::front);
+  samples.add_to(sums);
+  sums.choose_sides();
+  const std::vector<float> expected{4, 1, 1, 1, 2, 1};  // the last has no samples
+  EXPECT_EQ(sums.missing_samples(1), expected);
+}
+
 // One sees nothing, as in a closed room.
 TEST(ValueSums, DarkPlacesOfACardStayDark) {
   Samples samples;
@@ -116,25 +148,54 @@ TEST(ValueSums, PlacesOfAPartCountTheSameHoweverManySamplesTheyHave) {
   ValueSums sums(one_part(2), BakeSides::max);
   samples.add_to(sums);
   sums.choose_sides();
-  EXPECT_FALSE(sums.counts(0, true));
-  EXPECT_FALSE(sums.counts(1, true));
+  EXPECT_FALSE(sums.is_wanted(0, true));
+  EXPECT_FALSE(sums.is_wanted(1, true));
   EXPECT_NEAR(sums.values()[0].ao, 0.9f, 1e-5f);
   EXPECT_NEAR(sums.values()[1].ao, 0.2f, 1e-5f);
+}
+
+/// A place of no small part, with eight samples of each side.
+ValueSums single_place(float front, float back) {
+  Samples samples;
+  for (int i = 0; i < 8; ++i) {
+    const float noise = i % 2 ? 0.2f : -0.2f;
+    samples.add(0, front + noise, back - noise);
+  }
+  ValueSums sums({{SmallParts::kLarge}, 0}, BakeSides::max);
+  samples.add_to(sums);
+  return sums;
+}
+
+TEST(ValueSums, TheDarkerSideIsWantedWhileThatItIsMattersForTheTarget) {
+  for (const bool back : {false, true}) {
+    ValueSums sums = back ? single_place(0.4f, 0.5f) : single_place(0.5f, 0.4f);
+    for (const float target : {0.0f, 0.02f, 0.2f}) {
+      sums.choose_sides(target);
+      EXPECT_TRUE(sums.is_wanted(0, back));
+      EXPECT_EQ(sums.is_wanted(0, !back), target < 0.1f) << target;
+    }
+  }
+}
+
+// Noise e^2 / 4 of a mean of both, where e^2 is that of their difference, half of which is regret.
+TEST(ValueSums, ErrorsContainTheRegretOfNotKnowingTheBrighterSide) {
+  ValueSums sums = single_place(0.5f, 0.5f);
+  sums.choose_sides();
+  EXPECT_NEAR(sums.squared_errors()[0] / sums.squared_noise(0), 3, 1e-4f);
+  sums.set_noise_ratio(0.5f);
+  EXPECT_NEAR(sums.squared_errors()[0] / sums.squared_noise(0), 2.5f, 1e-4f);
+  ValueSums sure = single_place(0.9f, 0.1f);
+  sure.choose_sides();
+  EXPECT_NEAR(sure.squared_errors()[0] / sure.squared_noise(0), 1, 1e-4f);
 }
 
 TEST(ValueSums, WhereNeitherSideIsSurelyBrighterTheLikelierCountsMore) {
   float before = 0.5f;
   for (const float back : {0.5f, 0.54f, 0.58f, 0.62f}) {
-    Samples samples;
-    for (int i = 0; i < 8; ++i) {
-      const float noise = i % 2 ? 0.2f : -0.2f;
-      samples.add(0, 0.5f + noise, back - noise);
-    }
-    ValueSums sums(one_part(1), BakeSides::max);
-    samples.add_to(sums);
+    ValueSums sums = single_place(0.5f, back);
     sums.choose_sides();
     const float ao = sums.values()[0].ao;
-    EXPECT_TRUE(sums.counts(0, false) && sums.counts(0, true)) << back;
+    EXPECT_TRUE(sums.is_wanted(0, false) && sums.is_wanted(0, true)) << back;
     EXPECT_LE(ao, back);
     EXPECT_GE(ao, 0.5f * (0.5f + back)) << "the mean";
     EXPECT_GE(ao, before);

@@ -62,8 +62,8 @@ MUTATIONS = [
         r"^PointSources\."),
     Mutation(
         "bake-chooses-the-darker-side", "host/bake/samples/value_sums.cpp",
-        "return difference > 0 ? 1.0f : 0.0f;",
-        "return difference < 0 ? 1.0f : 0.0f;",
+        "return {probability_above(-z),",
+        "return {probability_above(z),",
         r"^(Bake|BakeClosedForm|ValueSums)\."),
     Mutation(
         "sides-of-leaves-by-their-number-of-samples", "host/bake/samples/value_sums.cpp",
@@ -117,6 +117,26 @@ MUTATIONS = [
         "all.squares + c * c * all.own + (1 - 2 * c) * all.cross;",
         "all.squares + c * c * (all.own - all.cross);",
         r"^BakeTarget\."),
+    Mutation(
+        "errors-of-cards-by-their-own-samples", "host/bake/samples/value_sums.cpp",
+        "contrast_* contrast_);",
+        "1);",
+        r"^ValueSums\."),
+    Mutation(
+        "the-brighter-side-is-always-known", "host/bake/samples/value_sums.cpp",
+        " + choice_[i].regret / (scale() * scale());",
+        ";",
+        r"^ValueSums\."),
+    Mutation(
+        "the-darker-side-is-sampled-for-ever", "host/bake/samples/value_sums.cpp",
+        "kToleratedRegret * target_error * target_error *",
+        "0 * kToleratedRegret * target_error *",
+        r"^ValueSums\."),
+    Mutation(
+        "few-blocked-rays-are-darkness", "host/bake/samples/value_sums.cpp",
+        "const bool sees_nothing = is_dark(index) || is_inside(index);",
+        "const bool sees_nothing = is_inside(index);",
+        r"^ValueSums\."),
     Mutation(
         "bent-normals-count-by-scale", "host/bake/samples/sample_tracer.cpp",
         "values[i].bent.normalized() * traced.bent[k].length();",

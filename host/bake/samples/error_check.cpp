@@ -66,7 +66,7 @@ void ErrorCheck::compare(const ValueSums& sums, std::span<const std::uint32_t> p
     if (!sums.is_sampled(place) || !second_.is_sampled(at)) continue;
     values.push_back({double{sums.scalar(place)}, double{sums.scalar(place, second_, at)}});
     for (const std::size_t set : {0, 1}) mean[set] += values.back()[set];
-    differences.told += double{sums.squared_error(place)};
+    differences.told += double{sums.squared_noise(place)};
   }
   const auto count = static_cast<double>(values.size());
   differences.places += values.size();

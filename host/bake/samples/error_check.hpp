@@ -16,8 +16,8 @@ namespace dapple {
 struct ErrorFit {
   /// The part of the differences between a card's places that is not noise, [0,1].
   float contrast = 1;
-  /// Mean squared error of the places that are compared, with that contrast, over what
-  /// ValueSums::squared_error() tells for an error ratio of 1.
+  /// Mean squared error of the places that are compared, with that contrast and the same weights of
+  /// their sides in both sets, over ValueSums::squared_noise().
   float ratio = 1;
 };
 
@@ -32,7 +32,7 @@ class ErrorCheck {
   /// Adds samples of the second set.
   void add(std::vector<SurfaceSample> samples, const TracedSamples& found);
 
-  /// `sums`: of the first set, with an error ratio of 1. If none is compared, both figures are 1.
+  /// `sums`: of the first set. If none is compared, both figures are 1.
   [[nodiscard]] ErrorFit fit(const ValueSums& sums) const;
 
  private:
@@ -42,7 +42,7 @@ class ErrorCheck {
 
   /// Differences between both sets.
   struct Differences {
-    double told = 0;         ///< squared errors, as samples tell them
+    double told = 0;         ///< squared noise, as samples tell it
     double squares = 0;      ///< squared errors of single places and of means of cards
     double own = 0;          ///< squares of a card's differences from its mean, of one set
     double cross = 0;        ///< products of those of both sets

@@ -59,14 +59,15 @@ SampleRounds::SampleRounds(const SampledSurface& surface, std::uint32_t hash,
 
 bool SampleRounds::run(const RoundOptions& options) {
   if (!tracing_.progress.add(0)) return false;
-  const bool is_fixed = options.target_error <= 0;
+  target_error_ = options.target_error;
+  const bool is_fixed = target_error_ <= 0;
   is_in_all_placements_ = is_fixed && static_cast<std::size_t>(options.fixed.samples) >=
                                           kPointsOfPlacement * placements();
   sums_.set_sampling({is_fixed ? options.fixed.rays : options.rays, placements() > 1});
   const bool done =
       is_fixed ? take(static_cast<std::uint32_t>(options.fixed.samples), options.fixed.rays)
                : take(std::min(first_samples(options.first), options.limit), options.rays) &&
-                     refine(options.target_error, options.limit);
+                     refine(options.limit);
   if (done && is_fixed) judge();
   tracing_.progress.show();
   return done;
@@ -94,13 +95,13 @@ bool SampleRounds::take(std::uint32_t samples, int rays) {
   return round(wanted);
 }
 
-// Rounds until the standard error of nearly all values is `target`, or elements have `max_samples`
-// samples.
-bool SampleRounds::refine(float target, std::uint32_t max_samples) {
+// Rounds until the standard error of nearly all values is the target, or elements have
+// `max_samples` samples.
+bool SampleRounds::refine(std::uint32_t max_samples) {
   std::vector<std::uint32_t> wanted(taken_.size());
   for (;;) {
     judge();
-    const std::vector<float> factors = sums_.missing_samples(target);
+    const std::vector<float> factors = sums_.missing_samples(target_error_);
     double more = 0;
     for (std::size_t i = 0; i < taken_.size(); ++i) {
       float factor = 1;
@@ -115,7 +116,7 @@ bool SampleRounds::refine(float target, std::uint32_t max_samples) {
     tracing_.progress.expect(more);
     if (!round(wanted)) return false;
   }
-  count_values(target, max_samples);
+  count_values(max_samples);
   return true;
 }
 
@@ -131,9 +132,9 @@ double SampleRounds::double_missing(std::vector<std::uint32_t>& wanted,
   return more;
 }
 
-// Counts the values that have samples outside of closed geometry, and those with an error above
-// `target` around which no sample may be added.
-void SampleRounds::count_values(float target, std::uint32_t max_samples) {
+// Counts the values that have samples outside of closed geometry, and those with an error above the
+// target around which no sample may be added.
+void SampleRounds::count_values(std::uint32_t max_samples) {
   std::vector<bool> can_grow(sums_.size());
   for (std::size_t i = 0; i < surface_.size(); ++i) {
     if (!surface_.can_be_sampled(i)) continue;
@@ -146,7 +147,7 @@ void SampleRounds::count_values(float target, std::uint32_t max_samples) {
   for (std::uint32_t place = 0; place < squares.size(); ++place) {
     if (!sums_.is_sampled(place)) continue;
     ++counts.values;
-    if (!can_grow[place] && squares[place] > target * target) ++counts.above;
+    if (!can_grow[place] && squares[place] > target_error_ * target_error_) ++counts.above;
   }
 }
 
@@ -179,11 +180,10 @@ void SampleRounds::trace_second_set() {
 
 // Tells errors by all samples so far.
 void SampleRounds::judge() {
-  sums_.choose_sides();
+  sums_.choose_sides(target_error_);
   set_variance_factors();
-  sums_.set_error_ratio(1);
   const ErrorFit fit = check_.fit(sums_);
-  sums_.set_error_ratio(fit.ratio);
+  sums_.set_noise_ratio(fit.ratio);
   sums_.set_contrast(fit.contrast);
 }
 
@@ -194,8 +194,8 @@ SurfaceSample SampleRounds::sample(const SampleIndex& index) const {
       index.sequence);
   bool front = false, back = false;
   for (const std::uint32_t place : surface_.places(index.element)) {
-    front = front || sums_.counts(place, false);
-    back = back || sums_.counts(place, true);
+    front = front || sums_.is_wanted(place, false);
+    back = back || sums_.is_wanted(place, true);
   }
   sample.front = front;
   sample.back = sample.back && back;

@@ -56,9 +56,9 @@ class SampleRounds {
 
   [[nodiscard]] std::uint32_t first_samples(std::uint32_t least) const;
   bool take(std::uint32_t samples, int rays);
-  bool refine(float target, std::uint32_t max_samples);
+  bool refine(std::uint32_t max_samples);
   double double_missing(std::vector<std::uint32_t>& wanted, std::uint32_t max_samples) const;
-  void count_values(float target, std::uint32_t max_samples);
+  void count_values(std::uint32_t max_samples);
   bool round(const std::vector<std::uint32_t>& wanted);
   [[nodiscard]] std::uint32_t placements() const {
     return static_cast<std::uint32_t>(placements_.to_world.size());
@@ -83,6 +83,7 @@ class SampleRounds {
   std::size_t lights_;               ///< rays to lights are that many times as many
   std::size_t samples_at_once_ = 1;  ///< for take()'s rays
   int rays_ = kRaysPerSample;
+  float target_error_ = 0;             ///< 0: none
   bool is_in_all_placements_ = false;  ///< each point of an element is a sample in all placements
   PlacementVariance variance_;
   ErrorCheck check_;

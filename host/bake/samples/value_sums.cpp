@@ -16,12 +16,12 @@ namespace {
 /// Up to this AO a place sees nothing.
 constexpr float kDark = 1e-3f;
 
-/// Samples after which a place with samples inside closed geometry is known to see nothing: all of
-/// a few rays may be blocked by chance.
-constexpr float kSamplesOfEnclosed = 8;
+/// Samples after which a place is known to see nothing: all of a few rays may be blocked by chance.
+constexpr float kSamplesOfDark = 8;
 
-/// A side is surely the brighter one if the difference is so many standard errors.
-constexpr float kSure = 1.75f;
+/// The side that seems darker has enough samples when the regret of choosing the other is this
+/// share of the target's square (experiment 650).
+constexpr float kToleratedRegret = 0.2f;
 
 /// A sample counts for the three corners of its triangle, for each as 2/3 of one of full weight: so
 /// the squared error of a part's mean is twice what independent corners would have.
@@ -58,7 +58,7 @@ ValueSums::ValueSums(SmallParts parts, BakeSides sides, std::size_t lights)
       parts_(std::move(parts)),
       places_of_part_(parts_),
       of_place_(parts_.of_place.size()),
-      share_of_back_(of_place_.size(), 0.5f),
+      choice_(of_place_.size()),
       lights_(lights),
       front_light_(of_place_.size() * lights, V3f(0, 0, 0)),
       back_light_(front_light_) {}
@@ -116,12 +116,20 @@ PooledVariance ValueSums::pooled_variance() const {
   return pooled;
 }
 
-// The probability that the back is the brighter side, if the errors of both means are normal.
-float ValueSums::BackMinusFront::share_of_back() const {
-  if (places == 0) return 0;
-  const float error = std::sqrt(square_error);
-  if (std::abs(difference) >= kSure * error) return difference > 0 ? 1.0f : 0.0f;
-  return 0.5f * std::erfc(-difference / (error * std::numbers::sqrt2_v<float>));
+// If the errors of both means are normal. The regret is E[min(d, 0)^2] of the difference d, whose
+// mean is above 0.
+ValueSums::SideChoice ValueSums::BackMinusFront::choice() const {
+  if (places == 0) return {0, 0};
+  if (!(square_error > 0)) return {difference > 0 ? 1.0f : 0.0f, 0};
+  const auto probability_above = [](float z) {
+    return 0.5f * std::erfc(z / std::numbers::sqrt2_v<float>);
+  };
+  const float z = difference / std::sqrt(square_error), distance = std::abs(z);
+  const float density =
+      std::exp(-0.5f * z * z) * std::numbers::inv_sqrtpi_v<float> / std::numbers::sqrt2_v<float>;
+  const float below = (1 + z * z) * probability_above(distance) - distance * density;
+  const auto n = static_cast<float>(places);
+  return {probability_above(-z), std::max(0.0f, below) * square_error / (n * n)};
 }
 
 void ValueSums::BackMinusFront::add(const BothSides& values, const PooledVariance& variance) {
@@ -134,28 +142,38 @@ void ValueSums::BackMinusFront::add(const BothSides& values, const PooledVarianc
 
 // By small parts: means of single vertices are noisy, and the larger of two is biased. All places
 // of a part count the same, however many samples they have.
-void ValueSums::choose_sides() {
+void ValueSums::choose_sides(float target_error) {
   variance_ = pooled_variance();
-  if (sides_ == BakeSides::mean) return;
+  if (sides_ == BakeSides::mean) {
+    std::fill(choice_.begin(), choice_.end(), SideChoice{0.5f, 0});
+    return;
+  }
+  tolerated_regret_ = kToleratedRegret * target_error * target_error * scale() * scale();
   tbb::parallel_for(std::size_t{0}, parts_.count, [&](std::size_t part) {
     BackMinusFront of_part;
     for (const std::uint32_t place : places_of_part_[part])
       of_part.add(of_place_[place], variance_);
     of_part.square_error *= kSharedSamples;
-    const float share = of_part.share_of_back();
-    for (const std::uint32_t place : places_of_part_[part]) share_of_back_[place] = share;
+    const SideChoice choice = of_part.choice();
+    for (const std::uint32_t place : places_of_part_[part]) choice_[place] = choice;
   });
-  tbb::parallel_for(std::size_t{0}, share_of_back_.size(), [&](std::size_t i) {
+  tbb::parallel_for(std::size_t{0}, choice_.size(), [&](std::size_t i) {
     if (parts_.of_place[i] != SmallParts::kLarge) return;
     BackMinusFront of_place;
     of_place.add(of_place_[i], variance_);
-    share_of_back_[i] = of_place.share_of_back();
+    choice_[i] = of_place.choice();
   });
+}
+
+bool ValueSums::is_wanted(std::uint32_t place, bool back) const {
+  const SideChoice& choice = choice_[place];
+  return sides_ == BakeSides::mean || back == (choice.share_of_back > 0.5f) ||
+         choice.regret > tolerated_regret_;
 }
 
 float ValueSums::share_of_back(std::uint32_t place, const BothSides& sums) const {
   if (!(sums.front.weight > 0)) return 1;
-  return sums.back.weight > 0 ? share_of_back_[place] : 0.0f;
+  return sums.back.weight > 0 ? choice_[place].share_of_back : 0.0f;
 }
 
 float ValueSums::scalar(std::uint32_t place, const BothSides& sums) const {
@@ -163,23 +181,28 @@ float ValueSums::scalar(std::uint32_t place, const BothSides& sums) const {
   return (front + share_of_back(place, sums) * (back - front)) / scale();
 }
 
-float ValueSums::squared_error(std::uint32_t place) const {
+float ValueSums::squared_noise(std::uint32_t place) const {
   const BothSides& sums = of_place_[place];
+  const float share = share_of_back(place, sums);
   float square = 0;
   for (const bool back : {false, true}) {
     const SideSums& side = back ? sums.back : sums.front;
-    if (counts(place, back) && side.weight > 0)
-      square = std::max(square, variance_.of(side) / side.count());
+    const float part = back ? share : 1 - share;
+    if (side.weight > 0) square += part * part * variance_.of(side) / side.count();
   }
-  if (sides_ == BakeSides::mean && sums.back.weight > 0) square *= 0.5f;  // of two of them
-  return square * error_ratio_ * (factors_.empty() ? 1 : factors_[place]) / (scale() * scale());
+  return square * (factors_.empty() ? 1 : factors_[place]) / (scale() * scale());
 }
 
+// What is left of a place's own error in a value that was moved to the mean of its card falls as
+// the square of what is left of its difference.
 std::vector<float> ValueSums::squared_errors() const {
   std::vector<float> squares(of_place_.size());
   tbb::parallel_for(std::size_t{0}, squares.size(), [&](std::size_t i) {
-    squares[i] = squared_error(static_cast<std::uint32_t>(i));
+    const auto place = static_cast<std::uint32_t>(i);
+    squares[i] = noise_ratio_ * squared_noise(place) + choice_[i].regret / (scale() * scale());
   });
+  move_to_means_of_cards([&](std::uint32_t place) -> float& { return squares[place]; },
+                         contrast_* contrast_);
   return squares;
 }
 
@@ -188,10 +211,10 @@ std::vector<float> ValueSums::missing_samples(float target) const {
   tbb::parallel_for(std::size_t{0}, factors.size(), [&](std::size_t i) {
     const BothSides& place = of_place_[i];
     const auto index = static_cast<std::uint32_t>(i);
-    const bool may_be_enclosed = has_inside(index) && (!is_sampled(index) || is_dark(index));
     const float samples = place.front.count() + place.back.count() + place.inside_count();
+    const bool sees_nothing = is_dark(index) || is_inside(index);
     factors[i] = std::max({1.0f, factors[i] / (target * target),
-                           may_be_enclosed ? kSamplesOfEnclosed / samples : 1.0f});
+                           sees_nothing && samples > 0 ? kSamplesOfDark / samples : 1.0f});
   });
   return factors;
 }
@@ -211,20 +234,17 @@ std::span<const std::uint32_t> ValueSums::card_of(std::uint32_t place) const {
 // Linear shrinkage: the mean squared error of what is left is the smallest. `value`: returns that
 // of a place by reference.
 template <class Value>
-void ValueSums::move_to_means_of_cards(Value value) const {
-  if (!(contrast_ < 1)) return;
-  for (std::uint32_t i = 0; i < of_place_.size(); ++i) {
-    const std::span<const std::uint32_t> card = card_of(i);
-    if (card.empty() || card.front() != i) continue;
-    const auto is_odd = [this](std::uint32_t place) {
-      return !is_sampled(place) || is_dark(place);
-    };
-    if (std::any_of(card.begin(), card.end(), is_odd)) continue;
-    auto mean = value(i);
+void ValueSums::move_to_means_of_cards(Value value, float contrast) const {
+  if (!(contrast < 1)) return;
+  const auto is_odd = [this](std::uint32_t place) { return !is_sampled(place) || is_dark(place); };
+  tbb::parallel_for(std::size_t{0}, parts_.count, [&](std::size_t part) {
+    const std::span<const std::uint32_t> card = places_of_part_[part];
+    if (card.size() > kMostOfCard || std::any_of(card.begin(), card.end(), is_odd)) return;
+    auto mean = value(card.front());
     for (const std::uint32_t place : card.subspan(1)) mean += value(place);
     mean /= static_cast<float>(card.size());
-    for (const std::uint32_t place : card) value(place) = mean + (value(place) - mean) * contrast_;
-  }
+    for (const std::uint32_t place : card) value(place) = mean + (value(place) - mean) * contrast;
+  });
 }
 
 std::vector<PlaceValue> ValueSums::values() const {
@@ -244,7 +264,8 @@ std::vector<PlaceValue> ValueSums::values() const {
     if (sides_ == BakeSides::mean) bent = bent_of_both(place.front.bent, place.back.bent);
     values[i] = {std::clamp(ao, 0.0f, 1.0f), bent.normalized(), true, is_dark(i)};
   }
-  move_to_means_of_cards([&](std::uint32_t place) -> float& { return values[place].ao; });
+  move_to_means_of_cards([&](std::uint32_t place) -> float& { return values[place].ao; },
+                         contrast_);
   return values;
 }
 
@@ -257,7 +278,7 @@ std::vector<V3f> ValueSums::light_values(std::size_t light) const {
     if (share < 1) values[i] += front_light_[at] * ((1 - share) / of_place_[i].front.weight);
     if (share > 0) values[i] += back_light_[at] * (share / of_place_[i].back.weight);
   }
-  move_to_means_of_cards([&](std::uint32_t place) -> V3f& { return values[place]; });
+  move_to_means_of_cards([&](std::uint32_t place) -> V3f& { return values[place]; }, contrast_);
   return values;
 }
 

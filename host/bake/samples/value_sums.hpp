@@ -3,6 +3,7 @@
 // more samples it needs.
 #pragma once
 
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -48,9 +49,9 @@ class ValueSums {
 
   void set_sampling(const Sampling& sampling) { sampling_ = sampling; }
 
-  /// By what the squared errors that samples tell are to be multiplied, and the part of the
+  /// By what the squared noise that samples tell is to be multiplied, and the part of the
   /// differences within cards that is not noise, [0,1]: error_check.hpp.
-  void set_error_ratio(float ratio) { error_ratio_ = ratio; }
+  void set_noise_ratio(float ratio) { noise_ratio_ = ratio; }
   void set_contrast(float contrast) { contrast_ = contrast; }
 
   /// The places of a small part that has few of them, such as the corners of a leaf, in ascending
@@ -64,15 +65,14 @@ class ValueSums {
   /// not count for values.
   void add(std::span<const SurfaceSample> samples, const TracedSamples& found);
 
-  /// Learns how far samples vary. Chooses the brighter side of each small part and of each place of
-  /// larger ones, from the samples so far. Where neither is surely the brighter one, both count,
-  /// each by the probability that it is. For BakeSides::mean both count the same.
-  void choose_sides();
+  /// Learns how far samples vary. Weighs the sides of each small part, and of each place of larger
+  /// ones, by the probability that they are the brighter one, from the samples so far. For
+  /// BakeSides::mean both count the same. `target_error`: that of missing_samples().
+  void choose_sides(float target_error = 0);
 
-  /// Whether a side of a place counts for its value.
-  [[nodiscard]] bool counts(std::uint32_t place, bool back) const {
-    return back ? share_of_back_[place] > 0 : share_of_back_[place] < 1;
-  }
+  /// Whether a side of a place is to be sampled: it seems to be the brighter one, or the regret of
+  /// not knowing is large beside the target.
+  [[nodiscard]] bool is_wanted(std::uint32_t place, bool back) const;
 
   /// Whether a place has samples that count.
   [[nodiscard]] bool is_sampled(std::uint32_t place) const {
@@ -89,11 +89,14 @@ class ValueSums {
     return has_inside(place) && !is_sampled(place);
   }
 
-  /// The squared standard error of a place's scalar, estimated from its samples and from those of
-  /// places of similar value, as choose_sides() found them; relative to the largest unoccluded
-  /// value so far (of AO: 1), times the error ratio.
-  [[nodiscard]] float squared_error(std::uint32_t place) const;
-  [[nodiscard]] std::vector<float> squared_errors() const;  ///< of all places
+  /// The squared standard error of a place's scalar for these weights of its sides, estimated from
+  /// its samples and from those of places of similar value, as choose_sides() found them; relative
+  /// to the largest unoccluded value so far (of AO: 1).
+  [[nodiscard]] float squared_noise(std::uint32_t place) const;
+
+  /// The squared errors of values() and light_values(): noise times its ratio, which differs less
+  /// within a card, and the regret of taking the darker side for the brighter one.
+  [[nodiscard]] std::vector<float> squared_errors() const;
 
   /// The scalar of a place, of both sides by their shares, relative to the same value. Of samples
   /// of `other` if given, whose place `at` is the same one.
@@ -103,7 +106,7 @@ class ValueSums {
   }
 
   /// For each place, by what factor the number of its samples must grow for a standard error of
-  /// `target`; 1: enough. Places that may be enclosed need more than others.
+  /// `target`; 1: enough. Places that seem to see nothing need a few.
   [[nodiscard]] std::vector<float> missing_samples(float target) const;
 
   /// The values of all places; those of a card differ by their contrast. Places without samples
@@ -114,13 +117,19 @@ class ValueSums {
   [[nodiscard]] std::vector<V3f> light_values(std::size_t light) const;
 
  private:
+  /// Which side is the brighter one.
+  struct SideChoice {
+    float share_of_back = 0.5f;  ///< [0,1], the weight of the back in the value: its probability
+    float regret = std::numeric_limits<float>::infinity();  ///< expected square of what is lost by
+                                                            ///< choosing the likelier one
+  };
+
   /// How much brighter the backs of places are than their fronts: sums over places that have both.
   struct BackMinusFront {
     float difference = 0, square_error = 0;
     std::size_t places = 0;
     void add(const BothSides& values, const PooledVariance& variance);
-    /// The weight of the back in the value: 0 or 1 where a side surely is the brighter one.
-    [[nodiscard]] float share_of_back() const;
+    [[nodiscard]] SideChoice choice() const;
   };
 
   void add(const SurfaceSample& sample, const TracedSamples& found, std::size_t index);
@@ -128,9 +137,9 @@ class ValueSums {
   [[nodiscard]] float scale() const { return largest_ > 0 ? largest_ : 1; }
   [[nodiscard]] bool is_dark(std::uint32_t place) const;
   template <class Value>
-  void move_to_means_of_cards(Value value) const;
+  void move_to_means_of_cards(Value value, float contrast) const;
   [[nodiscard]] PooledVariance pooled_variance() const;
-  /// share_of_back_ of a place, of whose sides `sums` may lack samples.
+  /// The back's weight of a place, of whose sides `sums` may lack samples.
   [[nodiscard]] float share_of_back(std::uint32_t place, const BothSides& sums) const;
   [[nodiscard]] float scalar(std::uint32_t place, const BothSides& sums) const;
 
@@ -138,11 +147,12 @@ class ValueSums {
   SmallParts parts_;
   PlacesOfParts places_of_part_;
   std::vector<BothSides> of_place_;
-  std::vector<float> share_of_back_;  ///< by place, [0,1]: the weight of its back
-  std::vector<float> factors_;        ///< by place, of the variance of means; empty: 1
+  std::vector<SideChoice> choice_;  ///< by place
+  std::vector<float> factors_;      ///< by place, of the variance of means; empty: 1
   Sampling sampling_;
   PooledVariance variance_;  ///< when sides were chosen
-  float error_ratio_ = 1, contrast_ = 1;
+  float noise_ratio_ = 1, contrast_ = 1;
+  float tolerated_regret_ = 0;
   float largest_ = 0;  ///< the largest TracedSamples::largest
   std::size_t lights_;
   std::vector<V3f> front_light_, back_light_;  ///< weighted sums, the lights of a place together
