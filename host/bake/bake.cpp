@@ -67,20 +67,23 @@ BakeTracing tracing_against(const OccluderScene& occluders, const BakeOptions& o
                             const ComparedOptions& compared, const BakeRecords& records) {
   const TracePoints trace = trace_against(occluders);
   if (records.bias.compares()) occluders.closed->prepare();  // not in the time of comparing
-  const auto recorded = [&](BiasTracing tracing) {
+  const auto recorded = [&](TraceSamples values) {
+    return telling_inside(records.checkpoint.with(std::move(values)), *occluders.closed);
+  };
+  const auto quantity = [&](BiasTracing tracing) -> QuantityTracing {
+    TraceSamples of_check = recorded(tracing.values);
     tracing.exact = telling_inside(std::move(tracing.exact), *occluders.closed);
-    return telling_inside(records.checkpoint.with(records.bias.with(std::move(tracing))),
-                          *occluders.closed);
+    return {recorded(records.bias.with(std::move(tracing))), std::move(of_check)};
   };
   BakeTracing tracing{
-      recorded({"ao", ao_tracer(trace, options), ao_tracer(trace, compared.prefiltered),
+      quantity({"ao", ao_tracer(trace, options), ao_tracer(trace, compared.prefiltered),
                 ao_tracer(trace, compared.exact)}),
       {},
       0,
       records.progress,
       records.statistics};
   if (!options.light || occluders.lights.empty()) return tracing;
-  tracing.light = recorded({"light", light_tracer(options, occluders),
+  tracing.light = quantity({"light", light_tracer(options, occluders),
                             light_tracer(compared.prefiltered, occluders),
                             light_tracer(compared.exact, occluders)});
   tracing.lights = occluders.lights.size();

@@ -276,7 +276,7 @@ class InstanceRounds {
   }
 
   TracedSamples traced(const InstanceSlice& slice, int rays) {
-    const TraceSamples& trace = lights_ ? tracing_.light : tracing_.ao;
+    const TraceSamples& trace = lights_ ? tracing_.light.values : tracing_.ao.values;
     const TracedSamples found = trace(slice.samples, slice.placement, slice.placements, rays,
                                       hash_of(lights_ ? 0x55555555u : 0u, traces_++));
     for (const std::uint8_t inside : found.inside) tracing_.statistics.inside_samples += inside;
@@ -326,7 +326,7 @@ std::optional<InstanceValues> bake_instances(const Scene& scene, const BakeOptio
     }
     tracing.statistics.squared_errors += ao.sums().squared_error(i);
   }
-  if (tracing.light) {
+  if (tracing.lights > 0) {
     InstanceRounds light(scene, options, tracing, true);
     if (!light.run()) return {};
     add(tracing.statistics.light_target, light.counts());

@@ -168,7 +168,7 @@ std::optional<BakedMesh> bake_mesh(const Mesh& mesh, const std::vector<bool>& tw
   GroupValues values(of_group, options.bent);
   std::vector<bool> known, filled(groups.count);
   for (const PlaceValue& value : of_group) known.push_back(value.known);
-  if (tracing.light) {
+  if (tracing.lights > 0) {
     ValueSums light(small_parts(mesh, groups), options.sides, tracing.lights);
     SampleRounds light_rounds(sampled, ~hash, placements, tracing, light, options.sides, &sums);
     if (!light_rounds.run(round_options(options, first, placements, true))) return {};

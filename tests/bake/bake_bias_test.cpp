@@ -68,6 +68,14 @@ TEST(BakeBias, ItAgreesWithExactValues) {
   EXPECT_GT(bias.error, 0);
 }
 
+// In one batch: of later ones the clock decides. The second set of samples makes no value.
+TEST(BakeBias, AllSamplesThatMakeValuesAreComparedIfAskedFor) {
+  BakeOptions options = few_rays();
+  options.report_bias = 1;
+  const BakeResult baked = bake(tree(), options);
+  EXPECT_EQ(baked.statistics.bias.at("ao").share, 1);
+}
+
 TEST(BakeBias, MaxBiasChoosesAFootprint) {
   BakeOptions options = few_rays();
   options.max_bias = 1;

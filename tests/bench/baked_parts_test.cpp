@@ -84,7 +84,8 @@ std::vector<float> baked_by_slope(const Mesh& mesh, const std::vector<bool>& two
   BakeStatistics statistics;
   const RenderControl control;
   BakeProgress progress(1, control);
-  BakeTracing tracing{ao_tracer(by_slope, options), {}, 0, progress, statistics};
+  const TraceSamples ao = ao_tracer(by_slope, options);
+  BakeTracing tracing{{ao, ao}, {}, 0, progress, statistics};
   return bake_mesh(mesh, two_sided, 0, placements, options, tracing)->ao;
 }
 

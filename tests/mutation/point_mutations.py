@@ -119,8 +119,8 @@ MUTATIONS = [
         r"^BakeTarget\."),
     Mutation(
         "errors-of-cards-by-their-own-samples", "host/bake/samples/value_sums.cpp",
-        "contrast_* contrast_);",
-        "1);",
+        "const float left = contrast_ * contrast_;",
+        "const float left = 1;",
         r"^ValueSums\."),
     Mutation(
         "the-brighter-side-is-always-known", "host/bake/samples/value_sums.cpp",
@@ -132,6 +132,11 @@ MUTATIONS = [
         "kToleratedRegret * target_error * target_error *",
         "0 * kToleratedRegret * target_error *",
         r"^ValueSums\."),
+    Mutation(
+        "bias-of-the-second-set", "host/bake/samples/sample_rounds.cpp",
+        "traced(batch, trace_.of_check)",
+        "traced(batch, trace_.values)",
+        r"^BakeBias\."),
     Mutation(
         "few-blocked-rays-are-darkness", "host/bake/samples/value_sums.cpp",
         "const bool sees_nothing = is_dark(index) || is_inside(index);",

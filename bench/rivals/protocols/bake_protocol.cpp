@@ -19,7 +19,8 @@ std::vector<double> bake_parts(const std::vector<BakedPart>& parts, const TraceP
   BakeStatistics statistics;
   const RenderControl control;
   BakeProgress progress(1, control);
-  BakeTracing tracing{ao_tracer(trace, options), {}, 0, progress, statistics};
+  const TraceSamples ao = ao_tracer(trace, options);
+  BakeTracing tracing{{ao, ao}, {}, 0, progress, statistics};
   std::vector<double> values;
   for (std::uint32_t i = 0; i < parts.size(); ++i) {
     const BakedPart& part = parts[i];

@@ -173,7 +173,7 @@ void SampleRounds::trace_second_set() {
   }
   if (indices.empty()) return;
   const Batch batch = make_batch(std::move(indices));
-  const TracedSamples found = traced(batch);
+  const TracedSamples found = traced(batch, trace_.of_check);
   check_.add(batch.samples, found);
   count(found);
 }
@@ -232,14 +232,15 @@ bool SampleRounds::trace() {
   const bool goes_on = !found || tracing_.progress.add(before.samples.size());
   batch_traced_ = std::move(batch);
   if (goes_on && !batch_traced_.samples.empty())
-    traced_ = std::async(std::launch::async, [this] { return traced(batch_traced_); });
+    traced_ =
+        std::async(std::launch::async, [this] { return traced(batch_traced_, trace_.values); });
   if (!found) return true;
   add_traced(before, *found);
   return goes_on;
 }
 
-TracedSamples SampleRounds::traced(const Batch& batch) const {
-  return trace_(batch.samples, batch.placement, placements_, rays_, batch.hash);
+TracedSamples SampleRounds::traced(const Batch& batch, const TraceSamples& trace) const {
+  return trace(batch.samples, batch.placement, placements_, rays_, batch.hash);
 }
 
 void SampleRounds::count(const TracedSamples& found) {

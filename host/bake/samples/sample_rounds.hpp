@@ -13,11 +13,17 @@
 
 namespace dapple {
 
+/// The tracers of AO or of lights.
+struct QuantityTracing {
+  TraceSamples values;    ///< of samples that values are made of; their bias is reported
+  TraceSamples of_check;  ///< of the second set: error_check.hpp
+};
+
 /// The tracers of a bake, and its callbacks.
 struct BakeTracing {
-  TraceSamples ao;
-  TraceSamples light;      ///< empty: lights are not baked
-  std::size_t lights = 0;  ///< their number
+  QuantityTracing ao;
+  QuantityTracing light;
+  std::size_t lights = 0;  ///< their number; 0: they are not baked, and `light` is empty
   BakeProgress& progress;
   BakeStatistics& statistics;
 };
@@ -68,7 +74,7 @@ class SampleRounds {
   bool trace();
   void trace_second_set();
   void judge();
-  TracedSamples traced(const Batch& batch) const;
+  [[nodiscard]] TracedSamples traced(const Batch& batch, const TraceSamples& trace) const;
   void add_traced(const Batch& batch, const TracedSamples& found);
   void count(const TracedSamples& found);
   void set_variance_factors();
@@ -77,7 +83,7 @@ class SampleRounds {
   std::uint32_t hash_, batch_ = 0;
   const Placements& placements_;
   BakeTracing& tracing_;
-  const TraceSamples& trace_;
+  const QuantityTracing& trace_;
   ValueSums& sums_;
   const ValueSums* ao_;              ///< null: AO is traced, not lights
   std::size_t lights_;               ///< rays to lights are that many times as many

@@ -201,8 +201,8 @@ std::vector<float> ValueSums::squared_errors() const {
     const auto place = static_cast<std::uint32_t>(i);
     squares[i] = noise_ratio_ * squared_noise(place) + choice_[i].regret / (scale() * scale());
   });
-  move_to_means_of_cards([&](std::uint32_t place) -> float& { return squares[place]; },
-                         contrast_* contrast_);
+  const float left = contrast_ * contrast_;
+  move_to_means_of_cards([&](std::uint32_t place) -> float& { return squares[place]; }, left);
   return squares;
 }
 

@@ -148,7 +148,7 @@ bool TextureBake::add(std::uint32_t index, const Placements& placements, BakeTra
   if (!rounds.run(round_options(options_, kFirst, placements, false))) return false;
   std::vector<PlaceValue> values = sums.values();
   std::vector<std::vector<V3f>> light;
-  if (tracing.light) {
+  if (tracing.lights > 0) {
     ValueSums light_sums(parts, options_.sides, tracing.lights);
     SampleRounds light_rounds(texels, ~hash, placements, tracing, light_sums, options_.sides,
                               &sums);
