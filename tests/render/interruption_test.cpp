@@ -26,7 +26,8 @@ using std::chrono::steady_clock;
 // So many samples a pixel (2^20) that a render never ends during a test.
 constexpr int kEndless = 1 << 20;
 
-/// A copy of the kernels in which slices of pixels that have 64 samples never end.
+/// A copy of the kernels in which slices of pixels that have 1024 samples never end: tens of
+/// slices, so that a checkpoint is due on a fast machine, too.
 void copy_kernels_that_hang(const std::filesystem::path& to) {
   std::filesystem::copy(DAPPLE_SOURCE_FOLDER "/kernels", to,
                         std::filesystem::copy_options::recursive);
@@ -34,7 +35,7 @@ void copy_kernels_that_hang(const std::filesystem::path& to) {
   std::string text = bytes_of(file);
   ASSERT_TRUE(contains(text, first));
   text.insert(text.find(first),
-              "  if (work[params.slice.first_work].first_sample >= 64u)\n"
+              "  if (work[params.slice.first_work].first_sample >= 1024u)\n"
               "    for (volatile uint i = 1u; i; i = 1u) {}\n");
   write_bytes(file, text);
 }
