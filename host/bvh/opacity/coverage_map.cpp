@@ -1,6 +1,7 @@
 #include "bvh/opacity/coverage_map.hpp"
 
 #include <cmath>
+#include <optional>
 
 #include "bvh/opacity/map_row.hpp"
 
@@ -8,19 +9,20 @@ namespace dapple {
 namespace {
 
 constexpr float kSize = kMapSize;
-/// Maximum number of passes that scale a triangle's cells to its area. After two, nearly all
-/// triangles are exact but for rounding.
+/// Polygons with a smaller area, in cells, occlude nothing.
+constexpr float kLeastArea = 1e-6f;
+/// Maximum number of passes that scale a polygon's cells to its area. After two, nearly all are
+/// exact but for rounding.
 constexpr int kScalingPasses = 3;
 
-/// For a triangle whose coverage is rounded to 0 in every cell: divides its area equally over the
+/// For a polygon whose coverage is rounded to 0 in every cell: divides its area equally over the
 /// cells that it touches.
-void spread_evenly(const CellTriangle& triangle, CellCoverage& coverage) {
-  const int columns = triangle.column1 - triangle.column0 + 1,
-            rows = triangle.row1 - triangle.row0 + 1;
-  const float share = std::min(1.0f, triangle.area / static_cast<float>(columns * rows));
-  for (int row = triangle.row0; row <= triangle.row1; ++row) {
+void spread_evenly(const CellPolygon& polygon, CellCoverage& coverage) {
+  const int columns = polygon.column1 - polygon.column0 + 1, rows = polygon.row1 - polygon.row0 + 1;
+  const float share = std::min(1.0f, polygon.area / static_cast<float>(columns * rows));
+  for (int row = polygon.row0; row <= polygon.row1; ++row) {
     for (int column = 0; column < kMapSize; ++column) {
-      const bool touched = column >= triangle.column0 && column <= triangle.column1;
+      const bool touched = column >= polygon.column0 && column <= polygon.column1;
       coverage.share[row * kMapSize + column] = touched ? share : 0.0f;
     }
   }
@@ -44,23 +46,23 @@ struct Tally {
 /// Scales cells that are not full.
 template <int kLanes>
 DAPPLE_ALWAYS_INLINE Row<kLanes> scaled(const Row<kLanes>& share, float scale) {
-  return max(min(share * scale, 1.0f), at_least(share, 1.0f));
+  return max(min(share * scale, Row<kLanes>::one()), at_least(share, 1.0f));
 }
 
 /// Writes the shares that the edges leave of the cells in the touched rows.
-template <int kLanes>
-DAPPLE_ALWAYS_INLINE Tally<kLanes> cut_rows(const CellTriangle& triangle, CellCoverage& coverage) {
+template <int kLanes, int kEdges>
+DAPPLE_ALWAYS_INLINE Tally<kLanes> cut_rows(const CellPolygon& polygon, CellCoverage& coverage) {
   // Each edge cuts a share 1 - c from a cell. If these shares do not overlap, as in a thin sliver
-  // or along an edge, the share c0 + c1 + c2 - 2 remains. Scaling to the known area corrects the
+  // or along an edge, the share 1 less all 1 - c remains. Scaling to the known area corrects the
   // other cells. Whole rows are computed: full vectors without remainders.
-  const V2f b = triangle.a + triangle.edge1, c = triangle.a + triangle.edge2;
-  const bool turned = triangle.edge1.x * triangle.edge2.y < triangle.edge1.y * triangle.edge2.x;
-  const V2f corner[3] = {triangle.a,
-                         {turned ? c.x : b.x, turned ? c.y : b.y},
-                         {turned ? b.x : c.x, turned ? b.y : c.y}};
-  float nx[3], ny[3], offset[3];
-  for (int e = 0; e < 3; ++e) {
-    const V2f from = corner[e], along = corner[(e + 1) % 3] - from;
+  const V2f b = polygon.a + polygon.edge1, c = polygon.a + polygon.edge2;
+  const bool clockwise = polygon.edge1.cross(polygon.edge2) < 0.0f;
+  const V2f second(clockwise ? c.x : b.x, clockwise ? c.y : b.y);
+  const V2f last(clockwise ? b.x : c.x, clockwise ? b.y : c.y);
+  const V2f corner[4] = {polygon.a, second, kEdges == 4 ? polygon.a + polygon.fourth : last, last};
+  float nx[kEdges], ny[kEdges], offset[kEdges];
+  for (int e = 0; e < kEdges; ++e) {
+    const V2f from = corner[e], along = corner[(e + 1) % kEdges] - from;
     const float reach = std::fabs(along.x) + std::fabs(along.y);
     const float inverse = reach > 0.0f ? 1.0f / reach : 0.0f;
     nx[e] = -along.y * inverse;
@@ -69,17 +71,18 @@ DAPPLE_ALWAYS_INLINE Tally<kLanes> cut_rows(const CellTriangle& triangle, CellCo
   }
   // Along a row the shares are linear; from one row to the next they change by ny.
   const Row<kLanes> x = Row<kLanes>::indices() + 0.5f;
-  Row<kLanes> beyond[3];
-  const float y = static_cast<float>(triangle.row0) + 0.5f;
-  for (int e = 0; e < 3; ++e) beyond[e] = x * nx[e] + (offset[e] + ny[e] * y);
+  Row<kLanes> beyond[kEdges];
+  const float y = static_cast<float>(polygon.row0) + 0.5f;
+  for (int e = 0; e < kEdges; ++e) beyond[e] = x * nx[e] + (offset[e] + ny[e] * y);
   Tally<kLanes> tally;
-  for (int row = triangle.row0; row <= triangle.row1; ++row) {
-    Row<kLanes> left(-2.0f);
-    for (int e = 0; e < 3; ++e) {
-      left += min(max(beyond[e], 0.0f), 1.0f);
+  const auto zero = Row<kLanes>::zero(), one = Row<kLanes>::one();
+  for (int row = polygon.row0; row <= polygon.row1; ++row) {
+    Row<kLanes> left(1.0f - kEdges);
+    for (int e = 0; e < kEdges; ++e) {
+      left += min(max(beyond[e], zero), one);
       beyond[e] += ny[e];
     }
-    left = max(left, 0.0f);
+    left = max(left, zero);
     left.store(&coverage.share[row * kMapSize]);
     tally.add(left);
   }
@@ -88,20 +91,21 @@ DAPPLE_ALWAYS_INLINE Tally<kLanes> cut_rows(const CellTriangle& triangle, CellCo
 
 /// rasterize() for registers of `kLanes` floats. Calls finish(row, shares) for each touched row.
 template <int kLanes, class Finish>
-DAPPLE_ALWAYS_INLINE void rasterize_rows(const CellTriangle& triangle, CellCoverage& coverage,
+DAPPLE_ALWAYS_INLINE void rasterize_rows(const CellPolygon& polygon, CellCoverage& coverage,
                                          const Finish& finish) {
-  // Cells that are not full are scaled so that the sum over all cells is the triangle's area. Where
+  // Cells that are not full are scaled so that the sum over all cells is the polygon's area. Where
   // this fills more cells, another pass comes closer.
-  auto tally = cut_rows<kLanes>(triangle, coverage);
+  auto tally = polygon.is_quad ? cut_rows<kLanes, 4>(polygon, coverage)
+                               : cut_rows<kLanes, 3>(polygon, coverage);
   float scale = 1.0f;
   for (int pass = 1;; ++pass) {
     const float full = tally.full.sum(), partial = tally.partial.sum();
-    if (full + partial <= 0.0f) spread_evenly(triangle, coverage);
+    if (full + partial <= 0.0f) spread_evenly(polygon, coverage);
     if (partial <= 0.0f) break;
-    scale = std::max(0.0f, triangle.area - full) / partial;
+    scale = std::max(0.0f, polygon.area - full) / partial;
     if (pass == kScalingPasses || !(tally.largest.max() * scale > 1.0f)) break;
     tally = {};
-    for (int row = triangle.row0; row <= triangle.row1; ++row) {
+    for (int row = polygon.row0; row <= polygon.row1; ++row) {
       float* cells = &coverage.share[row * kMapSize];
       const auto share = scaled(Row<kLanes>::load(cells), scale);
       share.store(cells);
@@ -109,7 +113,7 @@ DAPPLE_ALWAYS_INLINE void rasterize_rows(const CellTriangle& triangle, CellCover
     }
     scale = 1.0f;
   }
-  for (int row = triangle.row0; row <= triangle.row1; ++row)
+  for (int row = polygon.row0; row <= polygon.row1; ++row)
     finish(row, scaled(Row<kLanes>::load(&coverage.share[row * kMapSize]), scale));
 }
 
@@ -164,46 +168,98 @@ MapStatistics CoverageMap::statistics() const {
   return out;
 }
 
-bool project(const CoveringTriangle& triangle, const Box3f& box, int axis, CellTriangle& out) {
-  const int u = column_axis(axis), v = row_axis(axis);
-  const float width = box.max[u] - box.min[u], height = box.max[v] - box.min[v];
-  if (!(width > 0.0f && height > 0.0f)) return false;
-  const V2f scale(kSize / width, kSize / height);
-  out.a = V2f(triangle.vertex[u] - box.min[u], triangle.vertex[v] - box.min[v]) * scale;
-  out.edge1 = V2f(triangle.edge1[u], triangle.edge1[v]) * scale;
-  out.edge2 = V2f(triangle.edge2[u], triangle.edge2[v]) * scale;
-  out.area = 0.5f * std::fabs(out.edge1.x * out.edge2.y - out.edge1.y * out.edge2.x);
-  if (!(out.area > 1e-6f)) return false;
-  const auto range = [](float base, float e1, float e2, int& first, int& last) {
-    const float low = base + std::min({0.0f, e1, e2}), high = base + std::max({0.0f, e1, e2});
-    first = std::clamp(static_cast<int>(low), 0, kMapSize - 1);
-    last = std::clamp(static_cast<int>(high), first, kMapSize - 1);
-  };
-  range(out.a.x, out.edge1.x, out.edge2.x, out.column0, out.column1);
-  range(out.a.y, out.edge1.y, out.edge2.y, out.row0, out.row1);
+namespace {
+
+/// Map cells per metre; none if the box has no area along the axis.
+std::optional<V2f> map_scale(const Box3f& box, int axis) {
+  const float width = box.max[column_axis(axis)] - box.min[column_axis(axis)];
+  const float height = box.max[row_axis(axis)] - box.min[row_axis(axis)];
+  if (!(width > 0.0f && height > 0.0f)) return std::nullopt;
+  return V2f(kSize / width, kSize / height);
+}
+
+V2f seen_along(int axis, const V3f& v) { return V2f(v[column_axis(axis)], v[row_axis(axis)]); }
+
+/// Sets the first and last cell between two places on a map.
+void set_range(float low, float high, int& first, int& last) {
+  first = std::clamp(static_cast<int>(low), 0, kMapSize - 1);
+  last = std::clamp(static_cast<int>(high), first, kMapSize - 1);
+}
+
+}  // namespace
+
+bool project(const CoveringTriangle& triangle, const Box3f& box, int axis, CellPolygon& out) {
+  const std::optional<V2f> scale = map_scale(box, axis);
+  if (!scale) return false;
+  out.a = seen_along(axis, triangle.vertex - box.min) * *scale;
+  out.edge1 = seen_along(axis, triangle.edge1) * *scale;
+  out.edge2 = seen_along(axis, triangle.edge2) * *scale;
+  out.is_quad = false;
+  out.area = 0.5f * std::fabs(out.edge1.cross(out.edge2));
+  if (!(out.area > kLeastArea)) return false;
+  set_range(out.a.x + std::min({0.0f, out.edge1.x, out.edge2.x}),
+            out.a.x + std::max({0.0f, out.edge1.x, out.edge2.x}), out.column0, out.column1);
+  set_range(out.a.y + std::min({0.0f, out.edge1.y, out.edge2.y}),
+            out.a.y + std::max({0.0f, out.edge1.y, out.edge2.y}), out.row0, out.row1);
   return true;
 }
 
-void rasterize(const CellTriangle& triangle, CellCoverage& coverage) {
+bool project_quad(const CoveringTriangle& triangle, const V3f& fourth, const Box3f& box, int axis,
+                  CellPolygon& out) {
+  if (!project(triangle, box, axis, out)) return false;
+  const V2f scale = *map_scale(box, axis);
+  const V2f &b = out.edge1, &c = out.edge2;
+  const V2f d = out.fourth = seen_along(axis, fourth - triangle.vertex) * scale;
+  // Convex: at b and at c the outline turns as it does at a.
+  const float turn = b.cross(c), at_b = b.cross(d - b), at_c = (c - d).cross(-c);
+  if (turn > 0.0f ? at_b < 0.0f || at_c < 0.0f : at_b > 0.0f || at_c > 0.0f) return false;
+  out.is_quad = true;
+  out.area = 0.5f * std::fabs((c - b).cross(d));
+  set_range(out.a.x + std::min({0.0f, b.x, c.x, d.x}), out.a.x + std::max({0.0f, b.x, c.x, d.x}),
+            out.column0, out.column1);
+  set_range(out.a.y + std::min({0.0f, b.y, c.y, d.y}), out.a.y + std::max({0.0f, b.y, c.y, d.y}),
+            out.row0, out.row1);
+  return true;
+}
+
+void rasterize(const CellPolygon& polygon, CellCoverage& coverage) {
   for_register_width([&]<int kLanes>() __attribute__((always_inline)) {
     rasterize_rows<kLanes>(
-        triangle, coverage, [&](int row, const Row<kLanes>& share) __attribute__((always_inline)) {
+        polygon, coverage, [&](int row, const Row<kLanes>& share) __attribute__((always_inline)) {
           share.store(&coverage.share[row * kMapSize]);
         });
   });
 }
 
-void OccludedCells::draw(const CellTriangle& triangle, float opacity) {
-  row0 = std::min(row0, triangle.row0);
-  row1 = std::max(row1, triangle.row1);
+void OccludedCells::draw(const CellPolygon& polygon, float opacity) {
+  row0 = std::min(row0, polygon.row0);
+  row1 = std::max(row1, polygon.row1);
   for_register_width([&]<int kLanes>() __attribute__((always_inline)) {
     CellCoverage coverage;
     rasterize_rows<kLanes>(
-        triangle, coverage, [&](int row, const Row<kLanes>& share) __attribute__((always_inline)) {
+        polygon, coverage, [&](int row, const Row<kLanes>& share) __attribute__((always_inline)) {
           float* cells = &occluded[row * kMapSize];
           (Row<kLanes>::load(cells) + share * opacity).store(cells);
         });
   });
+}
+
+std::uint32_t OccludedCells::draw(const LeafView& leaf, std::size_t t, std::uint32_t done) {
+  const CoveringTriangle& triangle = leaf.triangles[t];
+  const SharedEdges::Partner partner = leaf.edges.partner(leaf.axis, t);
+  CellPolygon projected;
+  done |= 1u << t;
+  if (partner.triangle >= 0 && !(done >> partner.triangle & 1u)) {
+    const auto other = static_cast<std::size_t>(partner.triangle);
+    const V3f fourth =
+        corner_of(leaf.triangles[other], leaf.edges.partner(leaf.axis, other).corner);
+    if (project_quad(turned(triangle, partner.corner), fourth, leaf.box, leaf.axis, projected)) {
+      draw(projected, triangle.opacity);
+      return done | 1u << partner.triangle;
+    }
+  }
+  if (project(triangle, leaf.box, leaf.axis, projected)) draw(projected, triangle.opacity);
+  return done;
 }
 
 void OccludedCells::clear() {
@@ -224,7 +280,7 @@ void OccludedCells::enclose(OccludedCells& back) {
 void OccludedCells::flush(std::array<float, kMapCells>& map) {
   for_register_width([&]<int kLanes>() __attribute__((always_inline)) {
     for (int row = row0; row <= row1; ++row) {
-      const auto share = min(Row<kLanes>::load(&occluded[row * kMapSize]), 1.0f);
+      const auto share = min(Row<kLanes>::load(&occluded[row * kMapSize]), Row<kLanes>::one());
       float* cells = &map[row * kMapSize];
       (Row<kLanes>::load(cells) * (Row<kLanes>(1.0f) - share)).store(cells);
     }
@@ -232,56 +288,19 @@ void OccludedCells::flush(std::array<float, kMapCells>& map) {
   clear();
 }
 
-std::uint64_t draw_closed(const Box3f& box, std::span<const CoveringTriangle> triangles, int axis,
+std::uint32_t draw_closed(const Box3f& box, std::span<const CoveringTriangle> triangles, int axis,
                           OccludedCells& cells, OccludedCells& back) {
-  std::uint64_t done = 0;
+  std::uint32_t done = 0;
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     if (!triangles[t].closed) continue;
-    done |= std::uint64_t{1} << t;
-    CellTriangle projected;
+    done |= 1u << t;
+    CellPolygon projected;
     if (!project(triangles[t], box, axis, projected)) continue;
     const bool faces_axis = triangles[t].edge1.cross(triangles[t].edge2)[axis] > 0.0f;
     (faces_axis ? cells : back).draw(projected, triangles[t].opacity);
   }
   cells.enclose(back);
   return done;
-}
-
-unsigned side_by_side(const CoveringTriangle& a, const CoveringTriangle& b) {
-  const V3f p[3] = {a.vertex, a.vertex + a.edge1, a.vertex + a.edge2};
-  const V3f q[3] = {b.vertex, b.vertex + b.edge1, b.vertex + b.edge2};
-  // Stored edges are rounded: corners that were equal may differ by a few roundings.
-  const float tolerance =
-      1e-5f * (std::fabs(a.edge1.x) + std::fabs(a.edge1.y) + std::fabs(a.edge1.z) +
-               std::fabs(a.edge2.x) + std::fabs(a.edge2.y) + std::fabs(a.edge2.z));
-  int shared[2][2], count = 0;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      if (count < 2 && p[i].equalWithAbsError(q[j], tolerance)) {
-        shared[count][0] = i;
-        shared[count++][1] = j;
-      }
-    }
-  }
-  if (count < 2 || shared[0][0] == shared[1][0] || shared[0][1] == shared[1][1]) return 0;
-  const V3f& from = p[shared[0][0]];
-  const V3f edge = p[shared[1][0]] - from;
-  const V3f third_a = p[3 - shared[0][0] - shared[1][0]] - from;
-  const V3f third_b = q[3 - shared[0][1] - shared[1][1]] - from;
-  const V3f turn_a = edge.cross(third_a), turn_b = edge.cross(third_b);
-  unsigned axes = 0;
-  for (int axis = 0; axis < 3; ++axis) axes |= unsigned{turn_a[axis] * turn_b[axis] < 0.0f} << axis;
-  return axes;
-}
-
-bool is_single_layer(std::span<const CoveringTriangle> triangles) {
-  for (std::size_t t = 1; t < triangles.size(); ++t) {
-    unsigned axes = 0;
-    for (std::size_t other = 0; other < t && axes != 7u; ++other)
-      axes |= side_by_side(triangles[other], triangles[t]);
-    if (axes != 7u) return false;
-  }
-  return true;
 }
 
 }  // namespace dapple

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "bvh/opacity/closed_surface.hpp"
+#include "bvh/opacity/covering_triangle.hpp"
 #include "dapple/scene.hpp"
 #include "dapple/shared/bvh_node.h"
 
@@ -16,10 +17,6 @@ namespace dapple {
 
 inline constexpr int kMapSize = 16;
 inline constexpr int kMapCells = kMapSize * kMapSize;
-
-/// The two axes that a map along `axis` spans: column_axis() for columns, row_axis() for rows.
-inline constexpr int column_axis(int axis) { return (axis + 1) % 3; }
-inline constexpr int row_axis(int axis) { return (axis + 2) % 3; }
 
 /// Area of the box seen along `axis`, square metres.
 inline float face_area(const Box3f& box, int axis) {
@@ -57,46 +54,48 @@ struct CoverageMap {
   [[nodiscard]] MapStatistics statistics() const;
 };
 
-/// A triangle to rasterize. If `opacity` is negative, cover() calls `opacity_at(triangle, u, v,
-/// share)`, which returns the mean opacity around the barycentrics over `share` of the triangle's
-/// area.
-struct CoveringTriangle {
-  V3f vertex, edge1, edge2;
-  float opacity;
-  bool closed = false;  ///< part of an opaque closed surface: closed_triangles()
-};
-
-/// The triangles for each axis. Triangles of meshes are the same for all axes; strips of strands
-/// face their axis.
-using Covering = std::array<std::span<const CoveringTriangle>, 3>;
-
 /// Multiplies the transmittances of triangles inside `box` into the map; their projected areas are
 /// preserved. Opacities of triangles that share an edge and lie side by side add up. The opacities
 /// of the fronts of closed surfaces add up, those of the backs too, and a cell takes the maximum of
 /// both. All other triangles overlap as if independent.
 template <class OpacityAt>
-void cover(CoverageMap& map, const Box3f& box, const Covering& covering,
+void cover(CoverageMap& map, const Box3f& box, const Covering& covering, const SharedEdges& edges,
            const OpacityAt& opacity_at);
 
-/// A projected triangle in units of map cells, and the cells it may touch.
-struct CellTriangle {
-  V2f a, edge1, edge2;               ///< in the order of the triangle, either orientation
+/// A projected triangle or convex quad in units of map cells, and the cells it may touch.
+struct CellPolygon {
+  V2f a, edge1, edge2;  ///< in the order of the triangle, either orientation
+  V2f fourth;           ///< of a quad: the corner across from `a`, from there
+  bool is_quad;
   float area;                        ///< in cells
   int column0, column1, row0, row1;  ///< inclusive
 };
 
 /// Projects the triangle along `axis`. Returns false if the box or the triangle has no area along
 /// `axis`.
-bool project(const CoveringTriangle& triangle, const Box3f& box, int axis, CellTriangle& out);
+bool project(const CoveringTriangle& triangle, const Box3f& box, int axis, CellPolygon& out);
+
+/// Projects the quad of the triangle and `fourth`, which lies beyond its edge from corner 1 to
+/// corner 2. Returns false if it is not convex, too.
+bool project_quad(const CoveringTriangle& triangle, const V3f& fourth, const Box3f& box, int axis,
+                  CellPolygon& out);
 
 /// Cells of a map, row after row; only the rows that the triangle touches are valid.
 struct CellCoverage {
   alignas(64) std::array<float, kMapCells> share;
 };
 
-/// Computes the covered fraction of each cell in the touched rows. The sum equals the triangle's
+/// Computes the covered fraction of each cell in the touched rows. The sum equals the polygon's
 /// area, unless cells would be more than full.
-void rasterize(const CellTriangle& triangle, CellCoverage& coverage);
+void rasterize(const CellPolygon& polygon, CellCoverage& coverage);
+
+/// The triangles of a leaf that are seen along an axis, and the box over which the map extends.
+struct LeafView {
+  std::span<const CoveringTriangle> triangles;
+  const SharedEdges& edges;
+  const Box3f& box;
+  int axis;
+};
 
 /// The share of each cell that a group of triangles occludes, in the map of one axis. The triangles
 /// lie side by side.
@@ -106,7 +105,10 @@ struct OccludedCells {
 
   OccludedCells() { fill_cells(occluded, 0.0f); }
   /// Adds the cells that rasterize() gives, times `opacity`.
-  void draw(const CellTriangle& triangle, float opacity);
+  void draw(const CellPolygon& polygon, float opacity);
+  /// Draws triangle `t`, whose opacity is constant, as one quad with the next triangle that permits
+  /// it. `done`: a mask with a bit for each triangle drawn before. Returns it with the new ones.
+  std::uint32_t draw(const LeafView& leaf, std::size_t t, std::uint32_t done);
   /// Sets each cell to the maximum of this and `back`: fronts and backs of closed surfaces. Clears
   /// `back`.
   void enclose(OccludedCells& back);
@@ -138,8 +140,9 @@ class NodeCoverage {
   /// Adds a child that is filled uniformly: one `opacity` over its box for each axis.
   void add_uniform(const V3f& opacity, const Box3f& child_box);
 
-  /// Adds the triangles of a leaf: a single layer by is_single_layer(), with constant opacities.
-  void add_layer(const Covering& covering, const Box3f& child_box, const SurfaceAreas& areas);
+  /// Adds the triangles of a leaf: a single layer, with constant opacities.
+  void add_layer(const Covering& covering, const SharedEdges& edges, const Box3f& child_box,
+                 const SurfaceAreas& areas);
 
   [[nodiscard]] const CoverageMap& map() const { return map_; }
   [[nodiscard]] const SurfaceAreas& areas() const { return areas_; }
@@ -159,18 +162,10 @@ class NodeCoverage {
   int child_count_ = 0;
 };
 
-/// Whether no triangle of a leaf occludes another, seen along any axis: they lie side by side, edge
-/// to edge.
-bool is_single_layer(std::span<const CoveringTriangle> triangles);
-
 // Implementation of cover().
 
-/// Returns a mask: bit k is set if the two triangles share an edge and lie on opposite sides of it,
-/// seen along axis k.
-unsigned side_by_side(const CoveringTriangle& a, const CoveringTriangle& b);
-
 template <class OpacityAt>
-void add_varying(OccludedCells& cells, const CellTriangle& t, const CellCoverage& coverage,
+void add_varying(OccludedCells& cells, const CellPolygon& t, const CellCoverage& coverage,
                  const OpacityAt& opacity_at) {
   cells.row0 = std::min(cells.row0, t.row0);
   cells.row1 = std::max(cells.row1, t.row1);
@@ -190,18 +185,18 @@ void add_varying(OccludedCells& cells, const CellTriangle& t, const CellCoverage
 }
 
 /// Rasterizes the triangles of closed surfaces into `cells`, with `back` as scratch. Returns a mask
-/// with a bit for each triangle done; leaves hold at most 8 primitives.
-std::uint64_t draw_closed(const Box3f& box, std::span<const CoveringTriangle> triangles, int axis,
+/// with a bit for each triangle done.
+std::uint32_t draw_closed(const Box3f& box, std::span<const CoveringTriangle> triangles, int axis,
                           OccludedCells& cells, OccludedCells& back);
 
 template <class OpacityAt>
-void cover(CoverageMap& map, const Box3f& box, const Covering& covering,
+void cover(CoverageMap& map, const Box3f& box, const Covering& covering, const SharedEdges& edges,
            const OpacityAt& opacity_at) {
   CellCoverage coverage;
   OccludedCells cells, back;
   for (int axis = 0; axis < 3; ++axis) {
     const std::span<const CoveringTriangle> triangles = covering[axis];
-    std::uint64_t done = draw_closed(box, triangles, axis, cells, back);
+    std::uint32_t done = draw_closed(box, triangles, axis, cells, back);
     cells.flush(map.transmittance[axis]);
     for (std::size_t first = 0; first < triangles.size(); ++first) {
       // A group: this triangle and every later one that lies side by side with a member.
@@ -210,24 +205,18 @@ void cover(CoverageMap& map, const Box3f& box, const Covering& covering,
       if (first > 0 && (done >> first & 1u)) continue;
       for (std::size_t t = first; t < triangles.size(); ++t) {
         if (done >> t & 1u) continue;
-        const auto beside = [&](std::size_t other) {
-          return (done >> other & 1u) &&
-                 (side_by_side(triangles[other], triangles[t]) >> axis & 1u);
-        };
-        bool joins = t == first;
-        for (std::size_t other = first; other < t && !joins; ++other) joins = beside(other);
-        if (!joins) continue;
-        done |= std::uint64_t{1} << t;
-        CellTriangle projected;
-        if (!project(triangles[t], box, axis, projected)) continue;
+        if (t != first && (edges.neighbours(axis, t) & done) >> first == 0) continue;
         if (triangles[t].opacity >= 0.0f) {
-          cells.draw(projected, triangles[t].opacity);
-        } else {
-          rasterize(projected, coverage);
-          add_varying(cells, projected, coverage, [&](float u, float v, float share) {
-            return opacity_at(triangles[t], u, v, share);
-          });
+          done = cells.draw({triangles, edges, box, axis}, t, done);
+          continue;
         }
+        done |= 1u << t;
+        CellPolygon projected;
+        if (!project(triangles[t], box, axis, projected)) continue;
+        rasterize(projected, coverage);
+        add_varying(cells, projected, coverage, [&](float u, float v, float share) {
+          return opacity_at(triangles[t], u, v, share);
+        });
       }
       cells.flush(map.transmittance[axis]);
     }
@@ -237,7 +226,8 @@ void cover(CoverageMap& map, const Box3f& box, const Covering& covering,
 template <class OpacityAt>
 void cover(CoverageMap& map, const Box3f& box, std::span<const CoveringTriangle> triangles,
            const OpacityAt& opacity_at) {
-  cover(map, box, Covering{triangles, triangles, triangles}, opacity_at);
+  const Covering covering{triangles, triangles, triangles};
+  cover(map, box, covering, SharedEdges(covering), opacity_at);
 }
 
 }  // namespace dapple

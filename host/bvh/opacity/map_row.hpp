@@ -28,6 +28,10 @@ struct RegisterOf<16> {
   using Type = SixteenFloats;
 };
 
+/// Sixteen times 0, and 1. Defined elsewhere, so that g++ 12 does not know the values: a minimum
+/// with a constant becomes two instructions, else one.
+extern const std::array<float, kMapSize> kZeroRow, kOneRow;
+
 /// A row of floats in registers of `kLanes` floats. Vectors that are wider than a register would be
 /// compared lane by lane (g++ 12).
 template <int kLanes>
@@ -48,6 +52,8 @@ struct Row {
     for (int i = 0; i < kParts; ++i) std::memcpy(to + i * kLanes, &part[i], sizeof part[i]);
   }
 
+  DAPPLE_ALWAYS_INLINE static Row zero() { return load(kZeroRow.data()); }
+  DAPPLE_ALWAYS_INLINE static Row one() { return load(kOneRow.data()); }
   /// 0, 1, 2 ... 15.
   DAPPLE_ALWAYS_INLINE static Row indices() {
     static constexpr float kIndices[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};

@@ -46,7 +46,7 @@ struct AxisResampling {
 template <int kLanes>
 DAPPLE_ALWAYS_INLINE Row<kLanes> cell_shares(const CellRange& range) {
   const auto begin = Row<kLanes>::indices();
-  return max(min(begin + 1.0f, range.to) - max(begin, range.from), 0.0f);
+  return max(min(begin + 1.0f, range.to) - max(begin, range.from), Row<kLanes>::zero());
 }
 
 /// Returns the share of a row of parent cells that lies in the range.
@@ -152,7 +152,7 @@ DAPPLE_ALWAYS_INLINE void merge_rows(const Rows& rows, const CellRanges& child, 
                                      const Cells& opacity, const Cells& overlap,
                                      const Rows& overlapped, float enclosed, Cells& map,
                                      Cells& map_covered) {
-  const Row<kLanes> one(1.0f);
+  const auto one = Row<kLanes>::one();
   const auto across = cell_shares<kLanes>(child[column_axis(axis)]);
   for (int row = rows.first; row <= rows.last; ++row) {
     const int at = row * kMapSize;
@@ -232,14 +232,15 @@ void NodeCoverage::add_uniform(const V3f& opacity, const Box3f& child_box) {
   children_[child_count_++] = ranges;
 }
 
-void NodeCoverage::add_layer(const Covering& covering, const Box3f& child_box,
-                             const SurfaceAreas& areas) {
+void NodeCoverage::add_layer(const Covering& covering, const SharedEdges& edges,
+                             const Box3f& child_box, const SurfaceAreas& areas) {
   const CellRanges ranges = cell_ranges(child_box);
   for (int axis = 0; axis < 3; ++axis) {
     if (!(face_area(box_, axis) > 0.0f)) continue;
-    for (const CoveringTriangle& triangle : covering[axis]) {
-      CellTriangle projected;
-      if (project(triangle, box_, axis, projected)) layer_.draw(projected, triangle.opacity);
+    const LeafView leaf{covering[axis], edges, box_, axis};
+    std::uint32_t done = 0;
+    for (std::size_t t = 0; t < leaf.triangles.size(); ++t) {
+      if (!(done >> t & 1u)) done = layer_.draw(leaf, t, done);
     }
     merge(ranges, axis, layer_.row0, layer_.row1, layer_.occluded, areas);
     layer_.clear();

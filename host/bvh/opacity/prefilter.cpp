@@ -20,18 +20,18 @@ namespace {
 constexpr std::uint32_t kTaskPrimitives = 2048;
 
 /// Maximum number of primitives of a leaf.
-constexpr std::size_t kMaxInLeaf = 8;
+constexpr std::size_t kMaxInLeaf = kMaxCovering / 2;
 
 /// The primitives of a leaf as triangles to rasterize, with the sums of their areas and normals.
 struct Leaf {
   /// Triangles, the same for all axes; or strips of strand segments, two triangles a segment,
   /// separately for each axis.
-  std::array<CoveringTriangle, 3 * 2 * kMaxInLeaf> storage;
+  std::array<CoveringTriangle, 3 * kMaxCovering> storage;
   std::size_t count = 0;  ///< primitives
   std::size_t drawn = 0;  ///< triangles for one axis
   bool facing = false;    ///< whether each axis has its own triangles
   bool textured = false;
-  bool single_layer = false;
+  bool one_strand = false;
   NormalMoments normals;
   SurfaceAreas areas;
   WallAreas walls;
@@ -221,17 +221,19 @@ class Prefilter {
     const BvhNode& node = object_.nodes[own];
     const Leaf leaf =
         node.prim_base & DAPPLE_SEGMENTS ? load_strands(node, slot) : load_triangles(node, slot);
-    if (leaf.single_layer) {
-      coverage.add_layer(leaf.covering(), box, leaf.areas);
+    const SharedEdges edges(leaf.covering());
+    if (leaf.facing ? leaf.one_strand : !leaf.textured && edges.is_single_layer()) {
+      coverage.add_layer(leaf.covering(), edges, box, leaf.areas);
       NodeOpacity opacity = layer_opacity(leaf, box);
       set_opacity(own, slot, opacity, box, leaf.areas, leaf.walls);
       return leaf;
     }
     CoverageMap map;
     const LeafTextures textures(leaf, object_.textured, integrals_);
-    cover(map, box, leaf.covering(), [&](const CoveringTriangle& t, float u, float v, float share) {
-      return textures.of(t).mean(u, v, share);
-    });
+    cover(map, box, leaf.covering(), edges,
+          [&](const CoveringTriangle& t, float u, float v, float share) {
+            return textures.of(t).mean(u, v, share);
+          });
     coverage.add(map, box, leaf.areas);
     NodeOpacity opacity = map_opacity(map, leaf.normals, box);
     set_opacity(own, slot, opacity, box, leaf.areas, leaf.walls);
@@ -256,7 +258,7 @@ class Prefilter {
         for (const CoveringTriangle& half : facing_strip(segment, axis)) *to++ = half;
       }
     }
-    leaf.single_layer = is_one_strand(all);
+    leaf.one_strand = is_one_strand(all);
     return leaf;
   }
 
@@ -281,7 +283,6 @@ class Prefilter {
       leaf.storage[leaf.count++] = triangle;
     }
     leaf.drawn = leaf.count;
-    leaf.single_layer = !leaf.textured && is_single_layer(leaf.along(0));
     return leaf;
   }
 

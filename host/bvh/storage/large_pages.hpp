@@ -4,6 +4,7 @@
 #pragma once
 
 #include <sys/mman.h>
+#include <tbb/parallel_for.h>
 
 #include <cstddef>
 #include <cstdlib>
@@ -29,6 +30,7 @@ struct LargePages {
 #ifdef MADV_HUGEPAGE
     madvise(memory, bytes, MADV_HUGEPAGE);  // if it is refused, pages stay small
 #endif
+    map_pages(static_cast<std::byte*>(memory), bytes);
     return static_cast<T*>(memory);
   }
 
@@ -46,6 +48,13 @@ struct LargePages {
 
  private:
   static constexpr std::size_t kPage = std::size_t{1} << 21;
+
+  /// Writes to each page in parallel. The system clears a page at its first write, which would else
+  /// happen in the one thread that constructs the values.
+  static void map_pages(std::byte* memory, std::size_t bytes) {
+    tbb::parallel_for(std::size_t{0}, bytes / kPage,
+                      [&](std::size_t page) { memory[page * kPage] = std::byte{0}; });
+  }
 
   /// Whether less than a fifth is lost when the last page is partly used.
   static bool is_large(std::size_t count) { return count > 4 * kPage / sizeof(T); }
