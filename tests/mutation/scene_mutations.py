@@ -69,6 +69,16 @@ MUTATIONS = [
         "if (entry.triangles == 2)", "if (entry.triangles == 1)",
         r"^ClosedSurface\."),
     Mutation(
+        "quads-with-a-dent-drawn-as-one", "host/bvh/opacity/coverage_map.cpp",
+        "if (turn > 0.0f ? at_b < 0.0f || at_c < 0.0f : at_b > 0.0f || at_c > 0.0f) return false;",
+        "",
+        r"^(CoverageMap|SharedEdges)\."),
+    Mutation(
+        "triangles-of-a-leaf-overlap-though-they-share-an-edge",
+        "host/bvh/opacity/covering_triangle.cpp",
+        "neighbours[a] = static_cast<std::uint16_t>(neighbours[a] | 1u << b);", "",
+        r"^(CoverageMap|SharedEdges)\."),
+    Mutation(
         "rings-forget-the-last-corner", "host/bvh/opacity/wall.cpp",
         "ring ^= hash_of(next) ^ hash_of(last);", "ring ^= hash_of(next);",
         r"^(InteriorTriangles|Wall)\."),
