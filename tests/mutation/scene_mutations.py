@@ -70,8 +70,8 @@ MUTATIONS = [
         r"^ClosedSurface\."),
     Mutation(
         "quads-with-a-dent-drawn-as-one", "host/bvh/opacity/coverage_map.cpp",
-        "if (turn > 0.0f ? at_b < 0.0f || at_c < 0.0f : at_b > 0.0f || at_c > 0.0f) return false;",
-        "",
+        "at_b < 0.0f || at_c < 0.0f : at_b > 0.0f || at_c > 0.0f",
+        "at_b < 0.0f && at_c < 0.0f : at_b > 0.0f && at_c > 0.0f",
         r"^(CoverageMap|SharedEdges)\."),
     Mutation(
         "triangles-of-a-leaf-overlap-though-they-share-an-edge",
