@@ -53,8 +53,8 @@ TEST(ColorMipLevels, UnseenTexelsBesideALeafHaveItsColourNotThatOfAnother) {
     atlas.alpha.push_back(red || green ? 255 : 0);
   }
   const ColorLevel first = color_mip_levels(atlas, kByAlpha).at(0);
-  EXPECT_EQ(color_of_unseen(atlas, kByAlpha, first, 32), V3f(1, 0, 0));
-  EXPECT_EQ(color_of_unseen(atlas, kByAlpha, first, 47), V3f(0, 1, 0));
+  EXPECT_EQ(color_of_unseen(atlas, kByAlpha, first, 32, 0), V3f(1, 0, 0));
+  EXPECT_EQ(color_of_unseen(atlas, kByAlpha, first, 47, 0), V3f(0, 1, 0));
   EXPECT_EQ(first.color[16], V3f(1, 0, 0)) << "texels 32 and 33";
 }
 

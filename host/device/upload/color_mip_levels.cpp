@@ -33,9 +33,10 @@ float weight_of(const ColorTexture& texture, const TexelWeights& weights, std::s
 }
 
 WeightedTexel texel_of(const ColorTexture& texture, const TexelWeights& weights, std::size_t i) {
+  const float weight = weight_of(texture, weights, i);
+  if (weight == 0) return {V3f(0, 0, 0), 0};
   const std::uint8_t* texel = &texture.rgb[3 * i];
   const auto& linear = linear_of_codes();
-  const float weight = weight_of(texture, weights, i);
   return {V3f(linear[texel[0]], linear[texel[1]], linear[texel[2]]) * weight, weight};
 }
 
@@ -43,45 +44,55 @@ WeightedTexel texel_of(const ColorTexture& texture, const TexelWeights& weights,
 /// look-ups mix it with, else that of the texel of `coarser` that covers it. `texel`: of the level.
 template <class Texel>
 V3f color_of_unseen(const ColorTexture& texture, std::uint32_t width, std::uint32_t height,
-                    const Texel& texel, const ColorLevel& coarser, std::size_t i) {
-  const auto x = static_cast<int>(i % width), y = static_cast<int>(i / width);
+                    const Texel& texel, const ColorLevel& coarser, std::uint32_t x,
+                    std::uint32_t y) {
+  std::size_t rows[3], columns[3];
+  for (int k = 0; k < 3; ++k) {
+    const int row = static_cast<int>(y) + k - 1, column = static_cast<int>(x) + k - 1;
+    rows[k] =
+        static_cast<std::size_t>(wrapped_texel(row, static_cast<int>(height), texture.wrap_t)) *
+        width;
+    columns[k] =
+        static_cast<std::size_t>(wrapped_texel(column, static_cast<int>(width), texture.wrap_s));
+  }
   WeightedTexel sum{V3f(0, 0, 0), 0};
-  for (int row = y - 1; row <= y + 1; ++row) {
-    for (int column = x - 1; column <= x + 1; ++column) {
-      const auto at_row =
-          static_cast<std::size_t>(wrapped_texel(row, static_cast<int>(height), texture.wrap_t));
-      const auto at_column =
-          static_cast<std::size_t>(wrapped_texel(column, static_cast<int>(width), texture.wrap_s));
-      const WeightedTexel beside = texel(at_row * width + at_column);
+  for (const std::size_t row : rows) {
+    for (const std::size_t column : columns) {
+      const WeightedTexel beside = texel(row + column);
       sum.color += beside.color;
       sum.weight += beside.weight;
     }
   }
   if (sum.weight > 0) return sum.color / sum.weight;
-  const std::uint64_t above_x = static_cast<std::uint64_t>(x) * coarser.width / width;
-  const std::uint64_t above_y = static_cast<std::uint64_t>(y) * coarser.height / height;
+  const std::uint64_t above_x = std::uint64_t{x} * coarser.width / width;
+  const std::uint64_t above_y = std::uint64_t{y} * coarser.height / height;
   return coarser.color[above_y * coarser.width + above_x];
 }
 
-/// Texels of a finer level that a coarse one covers along a side, and how much of them.
-class CoveredTexels {
- public:
-  CoveredTexels(std::uint32_t at, std::uint32_t fine, std::uint32_t coarse)
-      : coarse_(coarse), begin_(std::uint64_t{at} * fine), end_(begin_ + fine) {}
-
-  [[nodiscard]] std::uint32_t first() const { return static_cast<std::uint32_t>(begin_ / coarse_); }
-  [[nodiscard]] std::uint32_t end() const {
-    return static_cast<std::uint32_t>((end_ + coarse_ - 1) / coarse_);
-  }
-  [[nodiscard]] float share(std::uint32_t texel) const {
-    const std::uint64_t from = texel * coarse_;
-    return static_cast<float>(std::min(end_, from + coarse_) - std::max(begin_, from)) /
-           static_cast<float>(coarse_);
-  }
-
- private:
-  std::uint64_t coarse_, begin_, end_;  ///< in parts of a fine texel
+/// Texels of a finer level that a coarse one covers along a side, and how much of them: two, or
+/// parts of three where a size is odd.
+struct CoveredTexels {
+  std::uint32_t first, end;
+  std::array<float, 3> share;
 };
+
+/// Those of each texel along a side.
+std::vector<CoveredTexels> covered_texels(std::uint32_t fine, std::uint32_t coarse) {
+  std::vector<CoveredTexels> all(coarse);
+  for (std::uint64_t at = 0; at < coarse; ++at) {
+    const std::uint64_t begin = at * fine, end = begin + fine;  // in parts of a fine texel
+    CoveredTexels& covered = all[at];
+    covered.first = static_cast<std::uint32_t>(begin / coarse);
+    covered.end = static_cast<std::uint32_t>((end + coarse - 1) / coarse);
+    for (std::uint32_t texel = covered.first; texel < covered.end; ++texel) {
+      const std::uint64_t from = std::uint64_t{texel} * coarse;
+      covered.share[texel - covered.first] =
+          static_cast<float>(std::min(end, from + coarse) - std::max(begin, from)) /
+          static_cast<float>(coarse);
+    }
+  }
+  return all;
+}
 
 /// Sums of the texels of a finer level that each texel covers: two by two, or parts of three where
 /// a size is odd.
@@ -90,15 +101,16 @@ WeightedLevel coarser(std::uint32_t width, std::uint32_t height, const Texel& te
   WeightedLevel coarse{std::max(1u, width / 2), std::max(1u, height / 2), {}, {}};
   coarse.color.resize(std::size_t{coarse.width} * coarse.height);
   coarse.weight.resize(coarse.color.size());
+  const std::vector<CoveredTexels> rows = covered_texels(height, coarse.height);
+  const std::vector<CoveredTexels> columns = covered_texels(width, coarse.width);
   tbb::parallel_for(0u, coarse.height, [&](std::uint32_t y) {
-    const CoveredTexels rows(y, height, coarse.height);
     for (std::uint32_t x = 0; x < coarse.width; ++x) {
-      const CoveredTexels columns(x, width, coarse.width);
       WeightedTexel sum{V3f(0, 0, 0), 0};
-      for (std::uint32_t j = rows.first(); j < rows.end(); ++j) {
-        for (std::uint32_t i = columns.first(); i < columns.end(); ++i) {
+      for (std::uint32_t j = rows[y].first; j < rows[y].end; ++j) {
+        for (std::uint32_t i = columns[x].first; i < columns[x].end; ++i) {
           const WeightedTexel one = texel(std::size_t{j} * width + i);
-          const float share = rows.share(j) * columns.share(i);
+          const float share =
+              rows[y].share[j - rows[y].first] * columns[x].share[i - columns[x].first];
           sum.color += one.color * share;
           sum.weight += one.weight * share;
         }
@@ -156,10 +168,13 @@ std::vector<ColorLevel> color_mip_levels(const ColorTexture& texture, const Texe
     ColorLevel& level = levels[k];
     level = {sum.width, sum.height, std::vector<V3f>(sum.color.size())};
     const auto texel = [&](std::size_t i) { return WeightedTexel{sum.color[i], sum.weight[i]}; };
-    tbb::parallel_for(std::size_t{0}, level.color.size(), [&](std::size_t i) {
-      level.color[i] = sum.weight[i] > 0 ? sum.color[i] / sum.weight[i]
-                                         : color_of_unseen(texture, sum.width, sum.height, texel,
-                                                           levels[k + 1], i);
+    tbb::parallel_for(0u, sum.height, [&](std::uint32_t y) {
+      for (std::uint32_t x = 0; x < sum.width; ++x) {
+        const std::size_t i = std::size_t{y} * sum.width + x;
+        level.color[i] = sum.weight[i] > 0 ? sum.color[i] / sum.weight[i]
+                                           : color_of_unseen(texture, sum.width, sum.height, texel,
+                                                             levels[k + 1], x, y);
+      }
     });
     sums.pop_back();
   }
@@ -171,10 +186,10 @@ bool is_seen(const ColorTexture& texture, const TexelWeights& weights, std::size
 }
 
 V3f color_of_unseen(const ColorTexture& texture, const TexelWeights& weights,
-                    const ColorLevel& coarser, std::size_t texel) {
+                    const ColorLevel& coarser, std::uint32_t x, std::uint32_t y) {
   return color_of_unseen(
       texture, texture.width, texture.height,
-      [&](std::size_t i) { return texel_of(texture, weights, i); }, coarser, texel);
+      [&](std::size_t i) { return texel_of(texture, weights, i); }, coarser, x, y);
 }
 
 }  // namespace dapple

@@ -43,8 +43,9 @@ TexelWeights weights_of_seen(const ColorTexture& texture, const TexelWeights& we
 /// Whether a texel counts at all.
 bool is_seen(const ColorTexture& texture, const TexelWeights& weights, std::size_t texel);
 
-/// The colour for a texel of the texture that does not count. `coarser`: the first of its levels.
+/// The colour for the texel of the texture in column x and row y, which does not count. `coarser`:
+/// the first of its levels.
 V3f color_of_unseen(const ColorTexture& texture, const TexelWeights& weights,
-                    const ColorLevel& coarser, std::size_t texel);
+                    const ColorLevel& coarser, std::uint32_t x, std::uint32_t y);
 
 }  // namespace dapple

@@ -50,12 +50,14 @@ std::vector<uint> pack_levels(const Scene& scene, const ColorTexture& texture,
     if (texels.size() >= std::numeric_limits<uint>::max()) refuse_size(scene, "texels");
     offsets.push_back(static_cast<uint>(texels.size()));
   };
-  const auto append = [&](std::size_t count, const auto& code_of) {
+  const auto append = [&](std::uint32_t width, std::uint32_t height, const auto& code_of) {
     begin();
     const std::size_t first = texels.size();
-    texels.resize(first + count);
-    tbb::parallel_for(std::size_t{0}, count,
-                      [&](std::size_t i) { texels[first + i] = code_of(i); });
+    texels.resize(first + std::size_t{width} * height);
+    tbb::parallel_for(0u, height, [&](std::uint32_t y) {
+      uint* to = &texels[first + std::size_t{y} * width];
+      for (std::uint32_t x = 0; x < width; ++x) *to++ = code_of(x, y);
+    });
   };
   std::array<uint, 256> red{}, green{}, blue{};
   for (std::size_t c = 0; c < 256; ++c) {
@@ -64,15 +66,18 @@ std::vector<uint> pack_levels(const Scene& scene, const ColorTexture& texture,
     blue[c] = code(linear_of_codes()[c], DAPPLE_BLUE_CODES) << 22;
   }
   const std::vector<ColorLevel> levels = color_mip_levels(texture, weights);
-  append(texture.rgb.size() / 3, [&](std::size_t i) {
+  append(texture.width, texture.height, [&](std::uint32_t x, std::uint32_t y) {
+    const std::size_t i = std::size_t{y} * texture.width + x;
     if (!levels.empty() && !is_seen(texture, weights, i))
-      return packed(color_of_unseen(texture, weights, levels.front(), i));
+      return packed(color_of_unseen(texture, weights, levels.front(), x, y));
     const std::uint8_t* texel = &texture.rgb[3 * i];
     return red[texel[0]] | green[texel[1]] | blue[texel[2]];
   });
   for (const ColorLevel& level : levels) {
     if (offsets.size() > DAPPLE_MAX_MIPS) break;
-    append(level.color.size(), [&](std::size_t i) { return packed(level.color[i]); });
+    append(level.width, level.height, [&](std::uint32_t x, std::uint32_t y) {
+      return packed(level.color[std::size_t{y} * level.width + x]);
+    });
   }
   return offsets;
 }
