@@ -31,23 +31,23 @@ struct Corners {
   }
 };
 
-/// Which corners of two triangles are equal: lane i of element r tells of corner i of `a` and
-/// corner (i + r) % 3 of `b`. Lanes are 0 or -1; lane 3 has no meaning.
-std::array<FourInts, 3> equal_corners(const Corners& a, const Corners& b) {
-  std::array<FourInts, 3> equal;
-  const FourInts turns[3] = {{0, 1, 2, 3}, {1, 2, 0, 3}, {2, 0, 1, 3}};
-  for (int r = 0; r < 3; ++r) {
-    equal[r] = FourInts{-1, -1, -1, -1};
-    for (int k = 0; k < 3; ++k) {
-      const Four difference = a.axis[k] - __builtin_shuffle(b.axis[k], turns[r]);
-      equal[r] &= (difference <= a.tolerance) & (difference >= -a.tolerance);
-    }
+/// Lane i is -1 if corner i of `a` equals corner (i + kFirst) % 3 of `b`, else 0. Lane 3 has no
+/// meaning.
+template <int kFirst>
+FourInts equal_corners(const Corners& a, const Corners& b) {
+  FourInts equal{-1, -1, -1, -1};
+  for (int k = 0; k < 3; ++k) {
+    const Four other = __builtin_shufflevector(b.axis[k], b.axis[k], kFirst, (kFirst + 1) % 3,
+                                               (kFirst + 2) % 3, 3);
+    const Four difference = a.axis[k] - other;
+    equal &= (difference <= a.tolerance) & (difference >= -a.tolerance);
   }
   return equal;
 }
 
 Joint joint_of(const Corners& p, const Corners& q) {
-  const std::array<FourInts, 3> equal = equal_corners(p, q);
+  const FourInts equal[3] = {equal_corners<0>(p, q), equal_corners<1>(p, q),
+                             equal_corners<2>(p, q)};
   const FourInts found = equal[0] + equal[1] + equal[2];
   if (found[0] + found[1] + found[2] > -2) return {};
   int shared[2][2] = {}, count = 0;

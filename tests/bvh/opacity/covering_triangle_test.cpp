@@ -30,7 +30,7 @@ const auto kNotVarying = [](const CoveringTriangle&, float, float, float) -> flo
 };
 
 /// Mean of |covered - expected| over the map's cells seen along z, where expected are the shares of
-/// 64 x 64 points a cell inside one of the triangles.
+/// 16 x 16 points a cell inside one of the triangles.
 double error_of(const CoverageMap& map, std::span<const CoveringTriangle> triangles) {
   const auto is_inside = [&](double x, double y) {
     for (const CoveringTriangle& t : triangles) {
@@ -129,7 +129,7 @@ TEST(SharedEdges, ATriangleIsInOneQuad) {
   std::vector<CoveringTriangle> fan;
   for (int i = 0; i < 3; ++i) fan.push_back(triangle_of(hub, rim[i], rim[i + 1]));
   const SharedEdges edges = edges_of(fan);
-  EXPECT_TRUE(edges.is_single_layer() == false) << "seen edge on they are not side by side";
+  EXPECT_FALSE(edges.is_single_layer()) << "seen edge on they are not side by side";
   EXPECT_EQ(edges.partner(kZ, 0).triangle, 1);
   EXPECT_EQ(edges.partner(kZ, 1).triangle, 0);
   EXPECT_LT(edges.partner(kZ, 2).triangle, 0);
