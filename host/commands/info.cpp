@@ -52,7 +52,8 @@ nlohmann::ordered_json report(const Scene& scene, const SceneBvh& bvh) {
   std::size_t textures = 0;
   if (!bvh.textured.empty()) {
     textures = scene.materials.size() * sizeof(MaterialRecord);
-    for (const Texture& texture : scene.textures) textures += mip_level_texels(texture);
+    for (const Texture& texture : scene.textures)
+      textures += mip_level_texels(texture.width, texture.height);
   }
   const std::size_t nodes = bvh.nodes.size() * sizeof(BvhNode);
   const std::size_t triangles =

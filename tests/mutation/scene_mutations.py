@@ -79,6 +79,14 @@ MUTATIONS = [
         "neighbours[a] = static_cast<std::uint16_t>(neighbours[a] | 1u << b);", "",
         r"^(CoverageMap|SharedEdges)\."),
     Mutation(
+        "images-decoded-ahead-are-of-others", "host/scene/gltf/decoded_images.cpp",
+        "ahead_.emplace(batch[i].first,", "ahead_.emplace(batch[batch.size() - 1 - i].first,",
+        r"^GltfColors\."),
+    Mutation(
+        "alphas-beyond-the-border-do-not-count", "host/bvh/opacity/opacity_mip_levels.cpp",
+        "wrapped_texel(-1, width, texture.wrap_s)", "0",
+        r"^(OpacityMipLevels|CutOutLevels|CoverageMap|OpacityLookup)\."),
+    Mutation(
         "rings-forget-the-last-corner", "host/bvh/opacity/wall.cpp",
         "ring ^= hash_of(next) ^ hash_of(last);", "ring ^= hash_of(next);",
         r"^(InteriorTriangles|Wall)\."),

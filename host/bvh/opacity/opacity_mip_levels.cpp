@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
 #include "scene/images/wrapped_texel.hpp"
 
@@ -105,13 +107,41 @@ float opaque_part(float a, float b, float cutoff) {
   return of_a > 0 ? before : 1 - before;
 }
 
-/// The share of a texel's square that is opaque: exactly along four lines across the edge.
+/// The least and the greatest alpha of the nine texels around each texel of a row.
+struct AlphaRanges {
+  std::vector<std::uint8_t> least, most;
+
+  AlphaRanges(const Texture& texture, int y) : least(texture.width), most(texture.width) {
+    const auto width = static_cast<int>(texture.width), height = static_cast<int>(texture.height);
+    const auto row = [&](int at) {
+      return texture.alpha.data() +
+             static_cast<std::size_t>(wrapped_texel(at, height, texture.wrap_t)) * texture.width;
+    };
+    // Of three rows, with a column more at each end. Simple loops, for vectors of bytes.
+    const std::uint8_t *const above = row(y - 1), *const here = row(y), *const below = row(y + 1);
+    std::vector<std::uint8_t> low(texture.width + 2), high(texture.width + 2);
+    for (std::size_t x = 0; x < texture.width; ++x) {
+      low[x + 1] = std::min(std::min(above[x], here[x]), below[x]);
+      high[x + 1] = std::max(std::max(above[x], here[x]), below[x]);
+    }
+    const auto before = static_cast<std::size_t>(wrapped_texel(-1, width, texture.wrap_s));
+    const auto after = static_cast<std::size_t>(wrapped_texel(width, width, texture.wrap_s));
+    low.front() = low[before + 1];
+    high.front() = high[before + 1];
+    low.back() = low[after + 1];
+    high.back() = high[after + 1];
+    for (std::size_t x = 0; x < texture.width; ++x) {
+      least[x] = std::min(std::min(low[x], low[x + 1]), low[x + 2]);
+      most[x] = std::max(std::max(high[x], high[x + 1]), high[x + 2]);
+    }
+  }
+};
+
+/// The share of a texel's square that is opaque, if an edge runs through it: exactly along four
+/// lines across the edge.
 float opaque_share(const Texture& texture, int x, int y, float factor, float cutoff) {
   constexpr int kLines = 4;
   const Neighbourhood around(texture, x, y);
-  const auto [least, most] = std::minmax_element(around.alpha.begin(), around.alpha.end());
-  if (thresholded(*least * factor, cutoff) == thresholded(*most * factor, cutoff))
-    return thresholded(*least * factor, cutoff);
   float by_x = 0, by_y = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     by_x += std::fabs(around.alpha[3 * i + 2] - around.alpha[3 * i + 1]) +
@@ -153,16 +183,23 @@ OpacityMipLevels::OpacityMipLevels(const Texture& texture, float factor, float c
       wrap_t_(texture.wrap_t) {
   Level base{static_cast<int>(texture.width), static_cast<int>(texture.height), {}};
   base.opacity.resize(texture.alpha.size());
+  std::array<float, 256> opacity_of;  // by the code of alpha
+  for (std::size_t code = 0; code < opacity_of.size(); ++code)
+    opacity_of[code] = thresholded(static_cast<float>(code) * (1.0f / 255.0f) * factor, cutoff);
   const bool is_cut_bilinearly = cutoff >= 0 && !texture.nearest;
   tbb::parallel_for(0, base.height, [&](int y) {
+    const std::size_t first = static_cast<std::size_t>(y) * texture.width;
+    if (!is_cut_bilinearly) {
+      for (std::size_t i = first; i < first + texture.width; ++i)
+        base.opacity[i] = opacity_of[texture.alpha[i]];
+      return;
+    }
+    const AlphaRanges around(texture, y);
     for (int x = 0; x < base.width; ++x) {
-      const std::size_t i =
-          static_cast<std::size_t>(y) * texture.width + static_cast<std::size_t>(x);
-      base.opacity[i] =
-          is_cut_bilinearly
-              ? opaque_share(texture, x, y, factor, cutoff)
-              : thresholded(static_cast<float>(texture.alpha[i]) * (1.0f / 255.0f) * factor,
-                            cutoff);
+      const auto column = static_cast<std::size_t>(x);
+      const float least = opacity_of[around.least[column]];
+      const bool is_edge = least != opacity_of[around.most[column]];
+      base.opacity[first + column] = is_edge ? opaque_share(texture, x, y, factor, cutoff) : least;
     }
   });
   levels_.push_back(std::move(base));
@@ -197,9 +234,9 @@ float OpacityMipLevels::mean(V2f uv, float width_texels) const {
   return bilinear(levels_[fine], at) * (1 - blend) + bilinear(levels_[coarse], at) * blend;
 }
 
-std::size_t mip_level_texels(const Texture& texture) {
-  std::size_t sum = texture.alpha.size();
-  for (std::size_t width = texture.width, height = texture.height; width > 1 || height > 1;) {
+std::size_t mip_level_texels(std::size_t width, std::size_t height) {
+  std::size_t sum = width * height;
+  while (width > 1 || height > 1) {
     width = std::max<std::size_t>(1, width / 2);
     height = std::max<std::size_t>(1, height / 2);
     sum += width * height;

@@ -54,6 +54,6 @@ class OpacityMipLevels {
 };
 
 /// Returns the number of texels of all levels, including the texture itself.
-std::size_t mip_level_texels(const Texture& texture);
+std::size_t mip_level_texels(std::size_t width, std::size_t height);
 
 }  // namespace dapple

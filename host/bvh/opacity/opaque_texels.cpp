@@ -1,5 +1,7 @@
 #include "bvh/opacity/opaque_texels.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -71,21 +73,26 @@ void OpaqueTexels::Table::make() {
   columns = (width + square - 1) / square;
   rows = (height + square - 1) / square;
   sums.assign(std::size_t{columns + 1} * (rows + 1), 0);
-  std::vector<std::uint8_t> least(columns);
-  for (std::uint32_t row = 0; row < rows; ++row) {
-    std::fill(least.begin(), least.end(), std::uint8_t{255});
+  const auto row_of_sums = [&](std::uint32_t row) {
+    return &sums[std::size_t{row} * (columns + 1)];
+  };
+  tbb::parallel_for(0u, rows, [&](std::uint32_t row) {
+    std::vector<std::uint8_t> least(columns, std::uint8_t{255});
     for (std::uint32_t y = row * square; y < std::min(height, (row + 1) * square); ++y) {
       const std::uint8_t* const of_row = &texture->alpha[std::size_t{y} * width];
-      for (std::uint32_t x = 0; x < width; ++x)
-        least[x / square] = std::min(least[x / square], of_row[x]);
+      for (std::uint32_t column = 0; column < columns; ++column) {
+        const std::uint32_t first = column * square, end = std::min(width, first + square);
+        least[column] = std::min(least[column], *std::min_element(of_row + first, of_row + end));
+      }
     }
-    const std::uint32_t* const above = &sums[std::size_t{row} * (columns + 1)];
-    std::uint32_t* const to = &sums[std::size_t{row + 1} * (columns + 1)];
-    std::uint32_t in_row = 0;
-    for (std::uint32_t column = 0; column < columns; ++column) {
-      in_row += least[column] < threshold ? 1 : 0;
-      to[column + 1] = above[column + 1] + in_row;
-    }
+    std::uint32_t* const to = row_of_sums(row + 1);
+    for (std::uint32_t column = 0; column < columns; ++column)
+      to[column + 1] = to[column] + (least[column] < threshold ? 1 : 0);
+  });
+  for (std::uint32_t row = 1; row < rows; ++row) {
+    const std::uint32_t* const above = row_of_sums(row);
+    std::uint32_t* const to = row_of_sums(row + 1);
+    for (std::uint32_t column = 0; column <= columns; ++column) to[column] += above[column];
   }
 }
 

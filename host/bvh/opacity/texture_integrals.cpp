@@ -29,7 +29,7 @@ std::shared_ptr<const OpacityMipLevels> SharedMipLevels::of(const OpacityTexture
       entry->levels =
           std::make_shared<const OpacityMipLevels>(image, texture.factor, texture.cutoff);
     });
-    keep(entry, mip_level_texels(image) * sizeof(float));
+    keep(entry, mip_level_texels(image.width, image.height) * sizeof(float));
   });
   return {entry, entry->levels.get()};
 }

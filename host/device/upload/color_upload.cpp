@@ -11,6 +11,7 @@
 #include <optional>
 #include <utility>
 
+#include "bvh/opacity/opacity_mip_levels.hpp"
 #include "bvh/storage/textured_triangle.hpp"
 #include "dapple/error.hpp"
 #include "device/upload/color_mip_levels.hpp"
@@ -84,6 +85,10 @@ std::vector<uint> pack_levels(const Scene& scene, const ColorTexture& texture,
 
 void pack_materials(const Scene& scene, SurfaceColors& colors) {
   std::map<std::pair<int, TexelWeights>, std::vector<uint>> levels;
+  std::size_t texels = 0;  // most of them have one kind of weights
+  for (const ColorTexture& texture : scene.color_textures)
+    texels += mip_level_texels(texture.width, texture.height);
+  colors.texels.reserve(texels);
   for (const Material& material : scene.materials) {
     ColorMaterial record{};
     for (int channel = 0; channel < 3; ++channel) record.color[channel] = material.color[channel];

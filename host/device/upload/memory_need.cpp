@@ -13,7 +13,8 @@ MemoryNeed min_need(const Scene& scene) {
   std::size_t triangles = 0, segments = 0, texels = 0;
   for (const Mesh& mesh : scene.meshes)
     (mesh.has_strands() ? segments : triangles) += mesh.primitive_count();
-  for (const Texture& texture : scene.textures) texels += mip_level_texels(texture);
+  for (const Texture& texture : scene.textures)
+    texels += mip_level_texels(texture.width, texture.height);
   MemoryNeed need;
   const std::size_t blocks = (triangles + 7) / 8 * sizeof(TriangleBlock);
   const std::size_t segment_blocks = (segments + 7) / 8 * sizeof(SegmentBlock);

@@ -173,7 +173,15 @@ MaterialSet read_materials(const Document& document, const std::vector<PlacedNod
                            bool with_lines, bool with_colors, Scene& scene) {
   const auto& given = document.model.materials;
   const ShownMaterials shown = shown_materials(document, placed, with_lines);
+  const auto needs_image = [&](std::size_t i) {
+    return shown.by_triangles[i] && base_color(given[i]).texture.texture >= 0 &&
+           (with_colors || alpha_mode(given[i]) != AlphaMode::opaque);
+  };
   TextureReader textures(document, with_colors, scene);
+  std::vector<int> expected;
+  for (std::size_t i = 0; i < given.size(); ++i)
+    if (needs_image(i)) expected.push_back(base_color(given[i]).texture.texture);
+  textures.expect(expected);
   MaterialSet set;
   for (std::size_t i = 0; i < given.size(); ++i) {
     const std::string who = element("material", i, given[i].name);

@@ -7,7 +7,6 @@
 
 #include "dapple/error.hpp"
 #include "scene/gltf/document/uri.hpp"
-#include "scene/images/image.hpp"
 #include "scene/message.hpp"
 
 namespace dapple::gltf {
@@ -20,11 +19,6 @@ constexpr const char* kOtherFormats[] = {"KHR_texture_basisu", "EXT_texture_avif
 /// The limit of the texels of all textures, alpha and colour. An image's file can be a thousand
 /// times smaller than its texels.
 constexpr std::uint64_t kMaxTexels = std::uint64_t{1} << 31;
-
-struct ImageBytes {
-  Bytes owned;  ///< empty when the bytes are in a buffer
-  std::span<const std::uint8_t> bytes;
-};
 
 std::string image_name(const Document& document, int image) {
   const ImageSource& source = document.images[static_cast<std::size_t>(image)];
@@ -41,11 +35,18 @@ bool is_there(const Document& document, int image) {
          std::filesystem::exists(document.base.folder / percent_decode(source.uri), unknown);
 }
 
-int image_of(const Document& document, int texture, const std::string& user) {
+/// Returns -1 if there is none that dapple can read.
+int find_image(const Document& document, int texture) {
   const auto& given = document.model.textures[static_cast<std::size_t>(texture)];
   const int webp = webp_image(given);
   if (webp >= 0 && (given.source < 0 || is_there(document, webp))) return webp;
-  if (given.source >= 0) return given.source;
+  return given.source;
+}
+
+int image_of(const Document& document, int texture, const std::string& user) {
+  const int image = find_image(document, texture);
+  if (image >= 0) return image;
+  const auto& given = document.model.textures[static_cast<std::size_t>(texture)];
   for (const char* extension : kOtherFormats) {
     if (!given.extensions.contains(extension)) continue;
     fail(document.file,
@@ -60,26 +61,10 @@ std::string describe(const Document& document, int image, const std::string& use
                               excerpt(image_name(document, image)), user));
 }
 
-ImageBytes read_image(const Document& document, int image, const std::string& what) {
-  const ImageSource& source = document.images[static_cast<std::size_t>(image)];
-  ImageBytes result;
-  if (source.buffer_view >= 0) {
-    result.bytes = view_bytes(document, source.buffer_view);
-    return result;
-  }
-  result.owned = is_data_uri(source.uri)
-                     ? decode_data_uri(source.uri, what)
-                     : read_regular_file(resolve_uri(document.base, source.uri, what), what);
-  result.bytes = result.owned;
-  return result;
-}
-
 Wrap wrap_mode(int code) {
   if (code == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return Wrap::clamp;
   return code == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? Wrap::mirror : Wrap::repeat;
 }
-
-AlphaImage alpha_of(const ColorImage& image) { return {image.width, image.height, image.alpha}; }
 
 /// Returns a texture without pixels that has the sampler's modes.
 Texture sampled(const Document& document, int texture) {
@@ -95,24 +80,34 @@ Texture sampled(const Document& document, int texture) {
 
 }  // namespace
 
+void TextureReader::expect(const std::vector<int>& textures) {
+  std::vector<int> images;
+  for (const int texture : textures) {
+    const int image = find_image(document_, texture);
+    if (image >= 0 && std::find(images.begin(), images.end(), image) == images.end())
+      images.push_back(image);
+  }
+  images_.expect(std::move(images));
+}
+
 int TextureReader::alpha_texture(int texture, const std::string& user) {
   const int image = image_of(document_, texture, user);
   Texture result = sampled(document_, texture);
   const Key key{image, result.wrap_s, result.wrap_t, result.nearest};
   if (const auto known = loaded_.find(key); known != loaded_.end()) return known->second;
   const std::string what = describe(document_, image, user);
-  AlphaImage decoded = with_colors_ ? alpha_of(this->decoded(image, what))
-                                    : decode_alpha(read_image(document_, image, what).bytes, what);
-  count_texels(decoded.alpha.size(), what);
-  if (std::all_of(decoded.alpha.begin(), decoded.alpha.end(),
-                  [](std::uint8_t alpha) { return alpha == 255; })) {
+  const ColorImage* content = nullptr;
+  read_once(image, what, [&] { content = &images_.get(image, what); });
+  const std::vector<std::uint8_t>& alpha = content->alpha;
+  count_texels(alpha.size(), what);
+  if (std::all_of(alpha.begin(), alpha.end(), [](std::uint8_t a) { return a == 255; })) {
     loaded_.emplace(key, -1);
     return -1;
   }
   result.name = one_line(image_name(document_, image));
-  result.width = decoded.width;
-  result.height = decoded.height;
-  result.alpha = std::move(decoded.alpha);
+  result.width = content->width;
+  result.height = content->height;
+  result.alpha = alpha;
   const int index = static_cast<int>(scene_.textures.size());
   scene_.textures.push_back(std::move(result));
   loaded_.emplace(key, index);
@@ -124,15 +119,6 @@ void TextureReader::count_texels(std::uint64_t texels, const std::string& what) 
   if (texels_ <= kMaxTexels) return;
   fail(what, "brings the textures to {} texels (at most {})", grouped(texels_),
        grouped(kMaxTexels));
-}
-
-const ColorImage& TextureReader::decoded(int image, const std::string& what) {
-  if (image != last_image_) {
-    read_once(image, what,
-              [&] { last_ = decode_color(read_image(document_, image, what).bytes, what); });
-    last_image_ = image;
-  }
-  return last_;
 }
 
 template <class Read>
@@ -155,12 +141,13 @@ int TextureReader::color_texture(int texture, const std::string& user) {
   if (const auto known = loaded_colors_.find(key); known != loaded_colors_.end())
     return known->second;
   const std::string what = describe(document_, image, user);
-  const ColorImage& decoded = this->decoded(image, what);
-  count_texels(decoded.alpha.size(), what);
+  ColorImage content;
+  read_once(image, what, [&] { content = images_.take(image, what); });
+  count_texels(content.alpha.size(), what);
   const int index = static_cast<int>(scene_.color_textures.size());
-  scene_.color_textures.push_back({one_line(image_name(document_, image)), decoded.width,
-                                   decoded.height, decoded.rgb, decoded.alpha, modes.wrap_s,
-                                   modes.wrap_t, modes.nearest});
+  scene_.color_textures.push_back({one_line(image_name(document_, image)), content.width,
+                                   content.height, std::move(content.rgb), std::move(content.alpha),
+                                   modes.wrap_s, modes.wrap_t, modes.nearest});
   loaded_colors_.emplace(key, index);
   return index;
 }

@@ -6,10 +6,11 @@
 #include <map>
 #include <string>
 #include <tuple>
+#include <vector>
 
 #include "dapple/scene.hpp"
+#include "scene/gltf/decoded_images.hpp"
 #include "scene/gltf/document/document.hpp"
-#include "scene/images/image.hpp"
 
 namespace dapple::gltf {
 
@@ -17,7 +18,11 @@ class TextureReader {
  public:
   /// `with_colors`: images of alphas are also read for their colours.
   TextureReader(const Document& document, bool with_colors, Scene& scene)
-      : document_(document), scene_(scene), with_colors_(with_colors) {}
+      : document_(document), scene_(scene), images_(document, with_colors) {}
+
+  /// Sets of which textures alpha or colour will be read, in this order, so that their images are
+  /// decoded on all processors.
+  void expect(const std::vector<int>& textures);
 
   /// Returns the index in Scene::textures of a glTF texture's alpha; -1 if all of it is opaque, so
   /// that walls are found to be opaque. Throws Error input, naming `user`, when the image is
@@ -33,8 +38,6 @@ class TextureReader {
  private:
   using Key = std::tuple<int, Wrap, Wrap, bool>;  // image, wrap_s, wrap_t, nearest
 
-  /// Decodes an image, or returns it if it was the last one: a material needs alpha and colour.
-  [[nodiscard]] const ColorImage& decoded(int image, const std::string& what);
   /// Calls read(), or throws the Error that it threw before, of `what`: the image may be large.
   template <class Read>
   void read_once(int image, const std::string& what, const Read& read);
@@ -42,13 +45,11 @@ class TextureReader {
 
   const Document& document_;
   Scene& scene_;
-  bool with_colors_;
+  DecodedImages images_;
   std::map<Key, int> loaded_, loaded_colors_;
   std::map<int, V3f> means_;            ///< by image
   std::map<int, std::string> refused_;  ///< images that cannot be read, and why
   std::uint64_t texels_ = 0;            ///< of all textures in the scene
-  int last_image_ = -1;                 ///< whose content is `last_`
-  ColorImage last_;
 };
 
 }  // namespace dapple::gltf

@@ -170,6 +170,18 @@ Pixels decode(std::span<const std::uint8_t> bytes, int channels, const std::stri
 
 }  // namespace
 
+std::uint64_t pixel_count(std::span<const std::uint8_t> bytes) {
+  if (image_format(bytes) == ImageFormat::webp) {
+    const WebpImage image(bytes);
+    return image.defect().empty() ? std::uint64_t{image.width()} * image.height() : 0;
+  }
+  int width = 0, height = 0, channels = 0;
+  const bool found = bytes.size() <= static_cast<std::size_t>(std::numeric_limits<int>::max()) &&
+                     stbi_info_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width,
+                                           &height, &channels) != 0;
+  return found ? static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) : 0;
+}
+
 AlphaImage decode_alpha(std::span<const std::uint8_t> bytes, const std::string& what) {
   const Pixels pixels = decode(bytes, 2, what);
   AlphaImage image;

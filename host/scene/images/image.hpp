@@ -15,6 +15,9 @@ namespace dapple {
 /// An image with more pixels is an error, which is found before the image is decoded.
 inline constexpr std::uint64_t kMaxImagePixels = std::uint64_t{1} << 28;
 
+/// The number of pixels by the file's header; 0 if it cannot be told.
+std::uint64_t pixel_count(std::span<const std::uint8_t> bytes);
+
 struct AlphaImage {
   std::uint32_t width = 0;
   std::uint32_t height = 0;

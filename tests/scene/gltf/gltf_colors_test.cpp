@@ -80,6 +80,54 @@ TEST(GltfColors, AnImageThatCannotBeReadIsNamedByEachOfItsMaterials) {
   expect_says(refused + "; its colour goes untextured", first.substr(first.rfind(": ")));
 }
 
+// Images are decoded several at a time, ahead of the materials that have them; some materials have
+// the same image, with other wrap modes or without, and some images cannot be read.
+TEST(GltfColors, EachMaterialHasItsImageHoweverManyAreDecodedAtATime) {
+  constexpr int kImages = 40, kMaterials = 100;
+  const auto is_broken = [](int image) { return image % 7 == 3; };
+  GltfBuilder b = colored({1, 1, 1, 1}, one_texel());
+  b.add("samplers", {{"wrapS", 33071}});
+  for (int i = 1; i < kImages; ++i) {
+    const auto code = static_cast<std::uint8_t>(i);
+    const Bytes texel = png::encode(1, 1, 8, 6, {code, 20, 30, code});
+    b.add("images", {{"bufferView", b.add_view(is_broken(i) ? Bytes{1, 2, 3} : texel)},
+                     {"mimeType", "image/png"}});
+    b.add("textures", {{"source", i}});
+  }
+  const auto image_of = [](int material) { return 1 + material * 17 % (kImages - 1); };
+  const json first = b.doc["materials"][0], primitive = b.doc["meshes"][0]["primitives"][0];
+  for (int m = 1; m < kMaterials; ++m) {
+    json material = first, shown = primitive;
+    int texture = image_of(m);
+    if (m > kImages) {
+      texture = static_cast<int>(b.doc["textures"].size());
+      b.add("textures", {{"source", image_of(m)}, {"sampler", 0}});
+    }
+    material["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", texture}};
+    if (m % 2 == 0 && !is_broken(image_of(m))) material["alphaMode"] = "BLEND";
+    b.add("materials", material);
+    shown["material"] = m;
+    if (m % 5 != 0) b.doc["meshes"][0]["primitives"].push_back(shown);  // others are not shown
+  }
+  const Scene scene = b.load(with_colors());
+  std::size_t broken = 0;
+  for (int m = 1; m < kMaterials; ++m) {
+    const Material& material = scene.materials.at(static_cast<std::size_t>(m));
+    const bool is_read = m % 5 != 0 && !is_broken(image_of(m));
+    broken += m % 5 != 0 && is_broken(image_of(m)) ? 1 : 0;
+    ASSERT_EQ(material.color_texture >= 0, is_read) << m;
+    ASSERT_EQ(material.alpha_texture >= 0, is_read && m % 2 == 0) << m;
+    if (!is_read) continue;
+    const auto& color = scene.color_textures[static_cast<std::size_t>(material.color_texture)];
+    EXPECT_EQ(color.rgb.at(0), image_of(m)) << m;
+    EXPECT_EQ(color.wrap_s, m > kImages ? Wrap::clamp : Wrap::repeat) << m;
+    if (m % 2 != 0) continue;
+    const auto& alpha = scene.textures[static_cast<std::size_t>(material.alpha_texture)];
+    EXPECT_EQ(alpha.alpha, std::vector<std::uint8_t>{color.rgb[0]}) << m;
+  }
+  EXPECT_EQ(scene.warnings.size(), broken);
+}
+
 TEST(GltfColors, APrimitiveWithoutTextureCoordinatesIsNamedInANote) {
   for (const char* mode : {"OPAQUE", "BLEND"}) {
     GltfBuilder b = colored({1, 1, 1, 1}, one_texel());
